@@ -1,0 +1,5 @@
+//! Exact rationals and enclosing intervals.
+
+mod rational;
+
+pub use rational::{ParseRationalError, Rational};
