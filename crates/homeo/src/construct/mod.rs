@@ -1,0 +1,3 @@
+//! Constructions of maps, one folder each.
+
+pub mod foliation;
