@@ -6,8 +6,15 @@
 //! Coordinates must lie within `2^-300..2^300` in magnitude or be zero, so that products neither
 //! overflow nor underflow; [`crate::topology`] reports others.
 
+mod contact;
+#[cfg(test)]
+mod contact_tests;
 mod orientation;
 
+pub use contact::{
+    faithful_projection, segment_meets_triangle, segments_meet, triangles_meet, triangles_meet_beyond_edge,
+    triangles_meet_beyond_vertex,
+};
 pub use orientation::{is_degenerate_triangle, orient2d, orient3d};
 
 /// The exact sign of a quantity.

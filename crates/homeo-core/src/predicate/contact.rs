@@ -1,0 +1,164 @@
+//! Whether triangles in space meet.
+//!
+//! All answers follow from signs of [`orient2d`] and [`orient3d`] alone, so they are exact for the
+//! stored coordinates. Sets are closed: touching is meeting.
+
+use super::{Sign, orient2d, orient3d};
+
+type Point = [f64; 3];
+
+/// The pairs of axes onto which a plane in space can be projected.
+const PROJECTIONS: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+
+/// Whether two numbers, neither zero, have opposite signs.
+#[inline]
+fn opposite(a: Sign, b: Sign) -> bool {
+    a != Sign::Zero && a == b.reversed()
+}
+
+/// Whether the signs hold no two opposite ones.
+#[inline]
+fn weakly_alike(signs: [Sign; 3]) -> bool {
+    !signs.contains(&Sign::Positive) || !signs.contains(&Sign::Negative)
+}
+
+#[inline]
+fn flat(point: Point, [u, v]: [usize; 2]) -> [f64; 2] {
+    [point[u], point[v]]
+}
+
+/// Axes of a projection under which `a b c` keeps a positive or negative area; `None` when the
+/// three points are collinear. It is then one-to-one on the plane of the triangle.
+#[inline]
+pub fn faithful_projection(a: Point, b: Point, c: Point) -> Option<[usize; 2]> {
+    PROJECTIONS
+        .into_iter()
+        .find(|&axes| orient2d(flat(a, axes), flat(b, axes), flat(c, axes)) != Sign::Zero)
+}
+
+/// Whether the closed segment and the closed triangle share a point.
+///
+/// The triangle may be degenerate (a segment or a point), and so may the segment.
+///
+/// ```
+/// use homeo_core::predicate::segment_meets_triangle;
+/// let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// assert!(segment_meets_triangle([[0.25, 0.25, -1.0], [0.25, 0.25, 1.0]], triangle));
+/// assert!(!segment_meets_triangle([[0.75, 0.75, -1.0], [0.75, 0.75, 1.0]], triangle));
+/// ```
+pub fn segment_meets_triangle([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
+    let sides = [orient3d(a, b, c, p), orient3d(a, b, c, q)];
+    segment_at_sides_meets([p, q], sides, [a, b, c])
+}
+
+/// Same, when the sides of the triangle's plane on which the ends lie are already known.
+fn segment_at_sides_meets([p, q]: [Point; 2], sides: [Sign; 2], [a, b, c]: [Point; 3]) -> bool {
+    if sides[0] == sides[1] {
+        return sides[0] == Sign::Zero && coplanar_segment_meets([p, q], [a, b, c]);
+    }
+    // The line p q crosses the plane in one point of the segment. It lies in the triangle when
+    // the line does not pass two edges on opposite hands.
+    weakly_alike([orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)])
+}
+
+/// A segment in the plane of a triangle, or any segment and a degenerate triangle.
+fn coplanar_segment_meets([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
+    let edges = [[a, b], [b, c], [c, a]];
+    let Some(axes) = faithful_projection(a, b, c) else {
+        return edges.iter().any(|&edge| segments_meet([p, q], edge));
+    };
+    let [p, q, a, b, c] = [p, q, a, b, c].map(|point| flat(point, axes));
+    point_in_flat_triangle(p, [a, b, c])
+        || point_in_flat_triangle(q, [a, b, c])
+        || [[a, b], [b, c], [c, a]].iter().any(|&edge| flat_segments_meet([p, q], edge))
+}
+
+fn point_in_flat_triangle(p: [f64; 2], [a, b, c]: [[f64; 2]; 3]) -> bool {
+    weakly_alike([orient2d(a, b, p), orient2d(b, c, p), orient2d(c, a, p)])
+}
+
+/// Two closed segments of the plane, degenerate ones included.
+fn flat_segments_meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
+    let boxes_meet = (0..2).all(|i| a[i].min(b[i]) <= c[i].max(d[i]) && c[i].min(d[i]) <= a[i].max(b[i]));
+    let separated = |[p, q]: [[f64; 2]; 2], [r, s]: [[f64; 2]; 2]| {
+        let side = orient2d(p, q, r);
+        side != Sign::Zero && side == orient2d(p, q, s)
+    };
+    boxes_meet && !separated([a, b], [c, d]) && !separated([c, d], [a, b])
+}
+
+/// Whether two closed segments in space share a point; both may be degenerate.
+pub fn segments_meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
+    if orient3d(a, b, c, d) != Sign::Zero {
+        return false;
+    }
+    // The four points lie in a plane; a triple that is not collinear says how to look at it.
+    let triples = [[a, b, c], [a, b, d], [c, d, a], [c, d, b]];
+    match triples.iter().find_map(|&[x, y, z]| faithful_projection(x, y, z)) {
+        Some(axes) => flat_segments_meet([flat(a, axes), flat(b, axes)], [flat(c, axes), flat(d, axes)]),
+        None => (0..3).all(|i| a[i].min(b[i]) <= c[i].max(d[i]) && c[i].min(d[i]) <= a[i].max(b[i])),
+    }
+}
+
+/// Whether two closed triangles share a point; both may be degenerate.
+///
+/// They do if and only if an edge of one meets the other.
+///
+/// # Complexity
+/// Two to twelve signs for triangles in general position.
+///
+/// ```
+/// use homeo_core::predicate::triangles_meet;
+/// let floor = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let standing = [[0.5, 0.5, 0.0], [0.5, 0.5, 1.0], [2.0, 2.0, 1.0]];
+/// assert!(triangles_meet(floor, standing), "they touch in one point");
+/// assert!(!triangles_meet(floor, standing.map(|[x, y, z]| [x + 0.001, y, z])));
+/// ```
+pub fn triangles_meet(first: [Point; 3], second: [Point; 3]) -> bool {
+    let sides = |[a, b, c]: [Point; 3], other: [Point; 3]| other.map(|p| orient3d(a, b, c, p));
+    let apart = |s: [Sign; 3]| s[0] != Sign::Zero && s[0] == s[1] && s[1] == s[2];
+    let second_sides = sides(first, second);
+    if apart(second_sides) {
+        return false;
+    }
+    let first_sides = sides(second, first);
+    if apart(first_sides) {
+        return false;
+    }
+    let any_edge = |of: [Point; 3], sides: [Sign; 3], other: [Point; 3]| {
+        (0..3).any(|i| {
+            let j = (i + 1) % 3;
+            segment_at_sides_meets([of[i], of[j]], [sides[i], sides[j]], other)
+        })
+    };
+    any_edge(first, first_sides, second) || any_edge(second, second_sides, first)
+}
+
+/// Whether the triangles `apex, first` and `apex, second` share more than the apex.
+///
+/// # Preconditions
+/// Neither triangle is degenerate.
+///
+/// Their common part is convex and holds the apex. If it holds another point, the ray from the apex
+/// through it leaves one of the triangles first, across the edge opposite the apex: hence the test
+/// of these two edges decides.
+pub fn triangles_meet_beyond_vertex(apex: Point, first: [Point; 2], second: [Point; 2]) -> bool {
+    segment_meets_triangle(first, [apex, second[0], second[1]])
+        || segment_meets_triangle(second, [apex, first[0], first[1]])
+}
+
+/// Whether the triangles `edge, first` and `edge, second` share more than the edge.
+///
+/// # Preconditions
+/// Neither triangle is degenerate.
+///
+/// They do if and only if they lie in one plane on the same side of the edge.
+pub fn triangles_meet_beyond_edge([u, v]: [Point; 2], first: Point, second: Point) -> bool {
+    if orient3d(u, v, first, second) != Sign::Zero {
+        return false;
+    }
+    faithful_projection(u, v, first).is_some_and(|axes| {
+        let [u, v, first, second] = [u, v, first, second].map(|p| flat(p, axes));
+        !opposite(orient2d(u, v, first), orient2d(u, v, second))
+    })
+}

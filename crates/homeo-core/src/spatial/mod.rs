@@ -1,0 +1,10 @@
+//! Boxes in space and a tree over them.
+//!
+//! Boxes hold `f64` bounds exactly (no rounding happens when points are enclosed), so what a query
+//! leaves out is certainly apart, and what it visits is a candidate for an exact test.
+
+mod aabb;
+mod tree;
+
+pub use aabb::Aabb;
+pub use tree::Tree;
