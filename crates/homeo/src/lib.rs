@@ -1,1 +1,13 @@
-//! Library.
+//! Certified bijective maps between shapes.
+//!
+//! The folders follow the data: a mesh comes in ([`input`]), is refined where a construction needs it
+//! ([`refine`]), a construction finds the map ([`construct`]), the map is evaluated both ways ([`map`]),
+//! written with its certificate ([`certificate`]) and shown ([`export`]).
+//! What is proved about a map is re-established by the separate checker `homeo-verify`.
+
+pub mod construct;
+pub mod input;
+pub mod linear;
+pub mod map;
+pub mod progress;
+pub mod refine;

@@ -125,7 +125,10 @@ impl<'a, const K: usize> Flow<'a, K> {
     pub fn turn_facets(&mut self) -> usize {
         let mut turned = 0;
         for index in 0..self.signs.len() {
-            for i in (0..K).filter(|&i| self.clamped[index] >> i & 1 == 1 && self.signs[index][i] < 0) {
+            for i in 0..K {
+                if self.clamped[index] >> i & 1 == 0 {
+                    continue;
+                }
                 let far = self.adjacency.across(CellId::new(index), i);
                 let both = far.is_some()
                     && self.skip != Some(far.cell())

@@ -1,0 +1,280 @@
+//! Leaves in floating point, with a filter that never guesses.
+//!
+//! A leaf chains projections, and intervals would double their width at each of them. So the error
+//! is kept as the image of a box under the chain's own derivative (Lohner's method): the true point
+//! on a facet differs from the computed one by `J x` with `|x_1| <= a_1`, `|x_2| <= a_2`, where the
+//! columns of `J` are carried along exactly like points, and each step's rounding is pulled back through
+//! `J` and added to `a`. Where the next facet is not certain within that error, the leaf
+//! reports [`Undecided`] and the caller follows it exactly: fast and exact leaves never differ.
+
+use homeo_core::mesh::{CellId, Facet};
+
+use super::exact::Sense;
+use super::locate::FloatLocation;
+use super::Foliation;
+
+/// Rounding cannot tell through which facet the leaf goes on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Undecided;
+
+/// Bound of the rounding of one step, in barycentric coordinates (all are at most 1).
+const STEP_ROUNDING: f64 = 12.0 * f64::EPSILON;
+/// The box of errors is rebuilt when the columns of the derivative are this close to parallel.
+const NEARLY_PARALLEL: f64 = 1e-5;
+/// Errors beyond this mean that nothing is known any more.
+const LARGEST_ERROR: f64 = 0.125;
+
+/// A leaf being followed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FastLeaf<const K: usize> {
+    pub cell: CellId,
+    /// Barycentric coordinates.
+    pub weights: [f64; K],
+    /// Bit per weight that is exactly 0.
+    zeros: u8,
+    derivative: [[f64; 2]; K],
+    reach: [f64; 2],
+    /// Before the first facet: plain bounds of the errors of all weights.
+    start: Option<[f64; K]>,
+    /// Length travelled.
+    pub length: f64,
+    /// Bound of its error.
+    pub length_error: f64,
+    pub steps: usize,
+}
+
+impl<const K: usize> FastLeaf<K> {
+    pub fn new(at: &FloatLocation<K>) -> Self {
+        let zeros = (0..K).filter(|&i| at.errors[i] == 0.0 && at.weights[i] == 0.0).fold(0, |bits, i| bits | 1 << i);
+        Self {
+            cell: at.cell,
+            weights: at.weights,
+            zeros,
+            derivative: [[0.0; 2]; K],
+            reach: [0.0; 2],
+            start: Some(at.errors),
+            length: 0.0,
+            length_error: 0.0,
+            steps: 0,
+        }
+    }
+
+    /// Bound of the error of weight `i`.
+    #[inline]
+    pub fn error(&self, i: usize) -> f64 {
+        if self.zeros >> i & 1 == 1 {
+            return 0.0;
+        }
+        match &self.start {
+            Some(errors) => errors[i],
+            None => {
+                let [u, v] = self.derivative[i];
+                // The factor covers the rounding of this very bound.
+                1.0000001 * (u.abs() * self.reach[0] + v.abs() * self.reach[1])
+            }
+        }
+    }
+
+    /// The facet through which the leaf leaves the current cell.
+    #[inline]
+    pub fn exit(&self, map: &Foliation<K>, sense: Sense) -> Result<usize, Undecided> {
+        let direction = &map.steps[self.cell.index()].direction;
+        let sign = sense.exit_sign();
+        let mut best = K;
+        for j in (0..K).filter(|&j| direction[j].signum() == sign) {
+            if best == K || self.zeros >> j & 1 == 1 {
+                best = j;
+                continue;
+            }
+            if self.zeros >> best & 1 == 1 {
+                continue;
+            }
+            let (here, there) = (f64::from(direction[best].unsigned_abs()), f64::from(direction[j].unsigned_abs()));
+            let (mine, other) = (self.weights[best] * there, self.weights[j] * here);
+            let error = there * self.error(best) + here * self.error(j) + 4.0 * f64::EPSILON * (mine.abs() + other.abs());
+            if other + error < mine {
+                best = j;
+            } else if mine + error >= other {
+                return Err(Undecided);
+            }
+        }
+        debug_assert!(best < K, "a direction has offsets of both signs");
+        Ok(best)
+    }
+
+    /// Moves to facet `i` of the current cell.
+    #[inline]
+    pub fn move_to(&mut self, map: &Foliation<K>, i: usize) -> Result<(), Undecided> {
+        let step = &map.steps[self.cell.index()];
+        if self.zeros >> i & 1 == 1 {
+            return self.settle(i);
+        }
+        let offset = f64::from(step.direction[i]);
+        let error = self.error(i);
+        // Weights move to b_j - (b_i / d_i) d_j, backwards and forwards alike.
+        let along = self.weights[i] / offset;
+        let h = f64::from(step.length);
+        self.length += h * along.abs();
+        self.length_error += h * error / offset.abs() + 4.0 * f64::EPSILON * self.length;
+        let column = self.derivative[i];
+        let mut stays_zero = 0;
+        for j in 0..K {
+            let direction = f64::from(step.direction[j]);
+            if step.direction[j] == 0 && self.zeros >> j & 1 == 1 {
+                stays_zero |= 1 << j;
+                continue;
+            }
+            self.weights[j] -= along * direction;
+            let ratio = direction / offset;
+            match &mut self.start {
+                Some(errors) => errors[j] += ratio.abs() * error + STEP_ROUNDING,
+                None => {
+                    self.derivative[j][0] -= ratio * column[0];
+                    self.derivative[j][1] -= ratio * column[1];
+                }
+            }
+        }
+        self.weights[i] = 0.0;
+        self.derivative[i] = [0.0; 2];
+        self.zeros = stays_zero | 1 << i;
+        self.normalize();
+        if self.start.is_some() { self.settle(i) } else { self.add_rounding(i) }
+    }
+
+    /// Makes the weights add up to 1 again by the largest of them.
+    #[inline]
+    fn normalize(&mut self) {
+        let mut largest = 0;
+        let mut sum = 0.0;
+        for j in 0..K {
+            sum += self.weights[j];
+            if self.weights[j] > self.weights[largest] {
+                largest = j;
+            }
+        }
+        self.weights[largest] += 1.0 - sum;
+    }
+
+    /// Turns plain bounds into the box on the first facet.
+    fn settle(&mut self, i: usize) -> Result<(), Undecided> {
+        let Some(errors) = self.start else { return Ok(()) };
+        self.rebuild(i, errors)?;
+        self.start = None;
+        Ok(())
+    }
+
+    /// A box whose sides are two of the facet's own coordinates.
+    fn rebuild(&mut self, i: usize, errors: [f64; K]) -> Result<(), Undecided> {
+        let mut others = (0..K).filter(|&j| j != i);
+        let [p, q] = [others.next().unwrap_or(0), others.next().unwrap_or(0)];
+        self.derivative = [[0.0; 2]; K];
+        let bound = |j: usize| if self.zeros >> j & 1 == 1 { 0.0 } else { errors[j] + STEP_ROUNDING };
+        self.reach = [bound(p), if K == 4 { bound(q) } else { 0.0 }];
+        self.derivative[p] = [1.0, 0.0];
+        if K == 4 {
+            self.derivative[q] = [0.0, 1.0];
+            self.derivative[K - 1 - usize::from(i == K - 1)] = [-1.0, -1.0];
+        } else {
+            self.derivative[q] = [-1.0, 0.0];
+        }
+        if self.reach[0].max(self.reach[1]) < LARGEST_ERROR { Ok(()) } else { Err(Undecided) }
+    }
+
+    /// Adds the rounding of one step, pulled back through the derivative.
+    #[inline]
+    fn add_rounding(&mut self, i: usize) -> Result<(), Undecided> {
+        // The rows of the derivative add up to zero: any two of them will do.
+        let p = if i == 0 { 1 } else { 0 };
+        let q = if i <= 1 { 2 } else { 1 };
+        let (u, v) = (self.derivative[p], self.derivative[q]);
+        if K == 3 {
+            let steepness = u[0].abs();
+            if !(1e-150..1e150).contains(&steepness) {
+                let errors = std::array::from_fn(|j| self.error(j));
+                return self.rebuild(i, errors);
+            }
+            self.reach[0] += STEP_ROUNDING / steepness;
+        } else {
+            let determinant = (u[0] * v[1] - u[1] * v[0]).abs();
+            let size = (u[0].abs() + v[0].abs()) * (u[1].abs() + v[1].abs());
+            if !(1e-150..1e150).contains(&determinant) || determinant < NEARLY_PARALLEL * size {
+                let errors = std::array::from_fn(|j| self.error(j));
+                return self.rebuild(i, errors);
+            }
+            let scale = 1.001 * STEP_ROUNDING / determinant;
+            self.reach[0] += scale * (u[1].abs() + v[1].abs());
+            self.reach[1] += scale * (u[0].abs() + v[0].abs());
+        }
+        let known = (0..K).all(|j| self.error(j) < LARGEST_ERROR);
+        if known { Ok(()) } else { Err(Undecided) }
+    }
+
+    /// Crosses facet `i`; gives the facet when the leaf ends there.
+    #[inline]
+    pub fn cross(&mut self, map: &Foliation<K>, i: usize) -> Option<Facet> {
+        self.steps += 1;
+        let step = &map.steps[self.cell.index()];
+        let far = step.across[i];
+        if far.is_none() {
+            return Some(Facet::new(self.cell, i));
+        }
+        let (weights, derivative, zeros) = (self.weights, self.derivative, self.zeros);
+        self.weights = [0.0; K];
+        self.derivative = [[0.0; 2]; K];
+        self.zeros = 1 << far.opposite();
+        // Zero but after a step of no length, where it keeps the rows' sum at zero.
+        self.derivative[far.opposite()] = derivative[i];
+        for k in (0..K).filter(|&k| k != i) {
+            let there = step.renumbered(i, k);
+            self.weights[there] = weights[k];
+            self.derivative[there] = derivative[k];
+            self.zeros |= (zeros >> k & 1) << there;
+        }
+        self.cell = far.cell();
+        None
+    }
+
+    /// Follows the leaf to its end; gives the facet there.
+    pub fn follow(&mut self, map: &Foliation<K>, sense: Sense) -> Result<Facet, Undecided> {
+        loop {
+            let i = self.exit(map, sense)?;
+            self.move_to(map, i)?;
+            if let Some(end) = self.cross(map, i) {
+                return Ok(end);
+            }
+        }
+    }
+
+    /// Follows the leaf from its source end until `wanted` has been travelled, and moves inside the
+    /// cell where that happens. `wanted_error` bounds the error of `wanted`.
+    /// Gives bounds of the errors of the weights.
+    pub fn follow_for(&mut self, map: &Foliation<K>, wanted: f64, wanted_error: f64) -> Result<[f64; K], Undecided> {
+        loop {
+            let i = self.exit(map, Sense::Forward)?;
+            let before = *self;
+            self.move_to(map, i)?;
+            if self.length >= wanted {
+                *self = before;
+                return Ok(self.go_inside(map, wanted, wanted_error));
+            }
+            if self.cross(map, i).is_some() {
+                // Rounding only: the leaf ends here.
+                return Ok(std::array::from_fn(|j| self.error(j)));
+            }
+        }
+    }
+
+    fn go_inside(&mut self, map: &Foliation<K>, wanted: f64, wanted_error: f64) -> [f64; K] {
+        let step = &map.steps[self.cell.index()];
+        let h = f64::from(step.length);
+        let along = (wanted - self.length).max(0.0) / h;
+        let slack = (wanted_error + self.length_error + 4.0 * f64::EPSILON * wanted) / h;
+        let mut errors = [0.0; K];
+        for j in 0..K {
+            let direction = f64::from(step.direction[j]);
+            errors[j] = self.error(j) + slack * direction.abs() + STEP_ROUNDING;
+            self.weights[j] = (self.weights[j] + along * direction).max(0.0);
+        }
+        errors
+    }
+}
