@@ -2,7 +2,7 @@
 
 use super::error::{Fault, Outcome};
 use super::mesh_file::Values;
-use super::scan::{Scanner, announced, parse_f32, show, too_large};
+use super::scan::{Scanner, announced, too_large};
 
 /// The order of the bytes of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,19 +105,36 @@ impl Scalar {
 
     /// All numbers in `bytes` as indices; those that do not fit become `u32::MAX`, which names nothing.
     pub fn decode_indices(self, bytes: &[u8], order: Order) -> Vec<u32> {
-        let narrow = |value: i64| u32::try_from(value).unwrap_or(u32::MAX);
+        let mut indices = Vec::with_capacity(bytes.len() / self.size());
+        self.decode_indices_into(bytes, order, &mut indices);
+        indices
+    }
+
+    /// The same, added to a list.
+    pub fn decode_indices_into(self, bytes: &[u8], order: Order, indices: &mut Vec<u32>) {
         match self {
-            Self::U32 => decode!(bytes, order, u32, 4),
-            Self::I32 => {
-                let mut indices = decode!(bytes, order, u32, 4);
-                indices.iter_mut().filter(|index| **index > i32::MAX as u32).for_each(|index| *index = u32::MAX);
-                indices
+            Self::U32 | Self::I32 => {
+                let largest = if self == Self::I32 { i32::MAX as u32 } else { u32::MAX };
+                let chunks = bytes.as_chunks::<4>().0.iter();
+                let narrow = |index: u32| if index > largest { u32::MAX } else { index };
+                match order {
+                    Order::Little => indices.extend(chunks.map(|chunk| narrow(u32::from_le_bytes(*chunk)))),
+                    Order::Big => indices.extend(chunks.map(|chunk| narrow(u32::from_be_bytes(*chunk)))),
+                }
+            }
+            Self::I64 | Self::U64 => {
+                let chunks = bytes.as_chunks::<8>().0.iter();
+                let narrow = |index: u64| u32::try_from(index).unwrap_or(u32::MAX);
+                match order {
+                    Order::Little => indices.extend(chunks.map(|chunk| narrow(u64::from_le_bytes(*chunk)))),
+                    Order::Big => indices.extend(chunks.map(|chunk| narrow(u64::from_be_bytes(*chunk)))),
+                }
             }
             _ => match self.decode(bytes, order) {
-                Values::I64(values) => values.into_iter().map(narrow).collect(),
-                Values::F64(values) => vec![u32::MAX; values.len()],
-                Values::F32(values) => vec![u32::MAX; values.len()],
-                Values::Text(_) => Vec::new(),
+                Values::I64(values) => {
+                    indices.extend(values.into_iter().map(|value| u32::try_from(value).unwrap_or(u32::MAX)));
+                }
+                other => indices.resize(indices.len() + other.len(), u32::MAX),
             },
         }
     }
@@ -135,9 +152,7 @@ impl Scalar {
             Self::F32 => {
                 let mut values = Vec::with_capacity(count);
                 for _ in 0..count {
-                    let token = scanner.expect(what)?;
-                    let message = || format!("{what}: expected a number, found \"{}\"", show(token));
-                    values.push(parse_f32(token).ok_or_else(|| scanner.fault("bad-number", message()))?);
+                    values.push(scanner.single(what)?);
                 }
                 Ok(Values::F32(values))
             }

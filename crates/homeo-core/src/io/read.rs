@@ -164,8 +164,8 @@ fn read_format(format: Format, bytes: &[u8]) -> Outcome<MeshFile> {
         Format::Msh => super::msh::read(bytes),
         Format::Vtk => super::vtk::read(bytes),
         Format::Vtu => todo!("vtu"),
-        Format::Ply => todo!("ply"),
-        Format::Json => todo!("facets"),
+        Format::Ply => super::ply::read(bytes),
+        Format::Json => super::facets::read(bytes),
     }?;
     if mesh.polygons.is_empty() && mesh.tetrahedra.is_empty() {
         let message = "the file holds neither polygons nor tetrahedra";

@@ -151,6 +151,12 @@ impl<'a> Scanner<'a> {
         parse_f64(token).ok_or_else(|| self.bad_number(what, "a number", token))
     }
 
+    /// A number in single precision, possibly NaN or infinite.
+    pub fn single(&mut self, what: &str) -> Outcome<f32> {
+        let token = self.expect(what)?;
+        parse_f32(token).ok_or_else(|| self.bad_number(what, "a number", token))
+    }
+
     /// A finite number.
     pub fn coordinate(&mut self) -> Outcome<f64> {
         let value = self.float("a coordinate")?;

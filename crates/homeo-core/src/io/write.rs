@@ -125,7 +125,7 @@ pub fn write_mesh_to(
         Format::Vtk => todo!("vtk"),
         Format::Vtu => todo!("vtu"),
         Format::Ply => todo!("ply"),
-        Format::Json => todo!("facets"),
+        Format::Json => super::facets::write(out, &mut parcel, options)?,
     }
     Ok(WriteReport { losses: parcel.finish() })
 }
