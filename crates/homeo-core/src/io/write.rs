@@ -121,10 +121,10 @@ pub fn write_mesh_to(
         Format::Obj => super::obj_write::write(out, &mut parcel, options)?,
         Format::Stl => super::stl::write(out, &mut parcel, options)?,
         Format::Medit => super::medit_write::write(out, &mut parcel, options)?,
-        Format::Msh => todo!("msh"),
-        Format::Vtk => todo!("vtk"),
+        Format::Msh => super::msh_write::write(out, &mut parcel, options)?,
+        Format::Vtk => super::vtk_write::write(out, &mut parcel, options)?,
         Format::Vtu => todo!("vtu"),
-        Format::Ply => todo!("ply"),
+        Format::Ply => super::ply_write::write(out, &mut parcel, options)?,
         Format::Json => super::facets::write(out, &mut parcel, options)?,
     }
     Ok(WriteReport { losses: parcel.finish() })
