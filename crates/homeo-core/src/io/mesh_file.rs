@@ -1,5 +1,7 @@
 //! What a mesh file says, before any interpretation.
 
+use std::sync::Arc;
+
 /// Polygons of any size, stored one after the other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PolygonList {
@@ -18,6 +20,11 @@ impl PolygonList {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// All polygons in order.
+    pub fn iter(&self) -> impl Iterator<Item = &[u32]> + '_ {
+        self.starts.windows(2).map(|pair| &self.corners[pair[0] as usize..pair[1] as usize])
     }
 
     /// The vertices of polygon `index`.
@@ -48,6 +55,18 @@ pub enum Element {
     Tetrahedron,
 }
 
+impl Element {
+    /// The word for several of them.
+    pub fn plural(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertices",
+            Self::Polygon => "polygons",
+            Self::Corner => "corners",
+            Self::Tetrahedron => "tetrahedra",
+        }
+    }
+}
+
 /// The numbers or texts of an [`Attribute`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
@@ -57,8 +76,8 @@ pub enum Values {
     F32(Vec<f32>),
     /// Whole numbers (tags, labels, colours).
     I64(Vec<i64>),
-    /// Texts (groups, materials).
-    Text(Vec<String>),
+    /// Texts (groups, materials); equal texts share their memory.
+    Text(Vec<Arc<str>>),
 }
 
 impl Values {
@@ -109,9 +128,11 @@ pub struct PhysicalName {
 /// lengths match their elements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshFile {
-    /// Coordinates, `#V by 3`; the third is 0 where the file is planar.
+    /// Coordinates, `#V by 3`; the third is 0 where the file is planar. Empty where `space` is 0.
     pub positions: Vec<[f64; 3]>,
-    /// Coordinates per vertex in the file: 2 or 3.
+    /// How many vertices there are; the length of `positions` unless `space` is 0.
+    pub vertex_count: usize,
+    /// Coordinates per vertex in the file: 2 or 3, or 0 where the file gives connectivity only.
     pub space: usize,
     /// Surface elements (in a volume mesh: tagged boundary faces).
     pub polygons: PolygonList,
@@ -121,6 +142,98 @@ pub struct MeshFile {
     pub attributes: Vec<Attribute>,
     /// Names of tags.
     pub names: Vec<PhysicalName>,
+    /// Files with the materials that the attribute `material` names (the `mtllib` of OBJ).
+    pub material_libraries: Vec<String>,
     /// What the reader could not keep, one sentence each (for the user's eyes).
     pub losses: Vec<String>,
+}
+
+impl MeshFile {
+    /// A surface of triangles in space.
+    pub fn from_triangles(positions: Vec<[f64; 3]>, triangles: &[[u32; 3]]) -> Self {
+        let mut polygons = PolygonList::default();
+        triangles.iter().for_each(|triangle| polygons.push(triangle));
+        Self { vertex_count: positions.len(), positions, space: 3, polygons, ..Self::default() }
+    }
+
+    /// A volume of tetrahedra in space.
+    pub fn from_tetrahedra(positions: Vec<[f64; 3]>, tetrahedra: Vec<[u32; 4]>) -> Self {
+        Self { vertex_count: positions.len(), positions, space: 3, tetrahedra, ..Self::default() }
+    }
+
+    /// Whether there are tetrahedra; the polygons are then tagged faces of them.
+    pub fn is_volume(&self) -> bool {
+        !self.tetrahedra.is_empty()
+    }
+
+    /// How many elements of a kind there are.
+    pub fn count(&self, element: Element) -> usize {
+        match element {
+            Element::Vertex => self.vertex_count,
+            Element::Polygon => self.polygons.len(),
+            Element::Corner => self.polygons.corners.len(),
+            Element::Tetrahedron => self.tetrahedra.len(),
+        }
+    }
+
+    /// The attribute of that name on that kind of element.
+    pub fn attribute(&self, name: &str, element: Element) -> Option<&Attribute> {
+        self.attributes.iter().find(|attribute| attribute.name == name && attribute.element == element)
+    }
+
+    /// Whether the invariant of this type holds.
+    ///
+    /// # Errors
+    /// A sentence on the first thing that breaks it.
+    pub fn check(&self) -> Result<(), String> {
+        self.check_vertices()?;
+        self.check_polygons()?;
+        let stray = self.tetrahedra.iter().flatten().find(|&&vertex| vertex as usize >= self.vertex_count);
+        if let Some(vertex) = stray {
+            return Err(format!("a tetrahedron names vertex {vertex} of {}", self.vertex_count));
+        }
+        for attribute in &self.attributes {
+            let expected = self.count(attribute.element).saturating_mul(attribute.components);
+            if attribute.components == 0 || attribute.values.len() != expected {
+                let Attribute { name, components, values, .. } = attribute;
+                let found = values.len();
+                return Err(format!(
+                    "attribute \"{name}\" with {components} components has {found} entries instead of {expected}"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_vertices(&self) -> Result<(), String> {
+        let expected = if self.space == 0 { 0 } else { self.vertex_count };
+        if self.positions.len() != expected {
+            return Err(format!("there are {} positions instead of {expected}", self.positions.len()));
+        }
+        if self.space == 1 || self.space > 3 {
+            return Err(format!("vertices have {} coordinates instead of 0, 2 or 3", self.space));
+        }
+        if self.vertex_count >= u32::MAX as usize {
+            return Err(format!("there are {} vertices, more than 32 bits can number", self.vertex_count));
+        }
+        match self.positions.iter().position(|position| position.iter().any(|x| !x.is_finite())) {
+            Some(vertex) => Err(format!("vertex {vertex} has a coordinate that is not finite")),
+            None => Ok(()),
+        }
+    }
+
+    fn check_polygons(&self) -> Result<(), String> {
+        let PolygonList { starts, corners } = &self.polygons;
+        let ends_meet = match (starts.first(), starts.last()) {
+            (Some(&first), Some(&last)) => first == 0 && last as usize == corners.len(),
+            _ => corners.is_empty(),
+        };
+        if !ends_meet || starts.windows(2).any(|pair| pair[0] > pair[1]) {
+            return Err("the starts of the polygons do not partition the corners".to_string());
+        }
+        match corners.iter().find(|&&vertex| vertex as usize >= self.vertex_count) {
+            Some(vertex) => Err(format!("a polygon names vertex {vertex} of {}", self.vertex_count)),
+            None => Ok(()),
+        }
+    }
 }
