@@ -218,10 +218,9 @@ impl<'a> Cursor<'a> {
                 self.at += N;
                 Ok(*chunk)
             }
-            None => Err(self.fault(
-                "unexpected-end",
-                format!("the file ends where {what} should be; it may be cut short"),
-            )),
+            None => {
+                Err(self.fault("unexpected-end", format!("the file ends where {what} should be; it may be cut short")))
+            }
         }
     }
 

@@ -10,10 +10,10 @@
 mod binary;
 mod build;
 mod error;
-mod medit;
-mod medit_write;
 mod facets;
 mod json;
+mod medit;
+mod medit_write;
 mod mesh_file;
 mod msh;
 mod msh_data;

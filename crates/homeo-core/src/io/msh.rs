@@ -46,8 +46,10 @@ fn read_header(numbers: &mut Numbers<'_>) -> Outcome<Version> {
         Some(version) if (2.0..3.0).contains(&version) => Version::Two,
         Some(4.1) => Version::Four,
         _ => {
-            let message =
-                format!("MSH version {} is not read; save the mesh as version 2.2 or 4.1 (gmsh -save -format msh41)", show(token));
+            let message = format!(
+                "MSH version {} is not read; save the mesh as version 2.2 or 4.1 (gmsh -save -format msh41)",
+                show(token)
+            );
             return Err(scanner.fault("unsupported-variant", message));
         }
     };
@@ -318,7 +320,9 @@ impl Reader {
             2 | 3 => {
                 self.mesh.polygons.corners.extend_from_slice(&corners[..count]);
                 if self.mesh.polygons.corners.len() >= u32::MAX as usize {
-                    return Err(numbers.scanner.fault("too-large", "the polygons have more corners than 32 bits can number"));
+                    return Err(numbers
+                        .scanner
+                        .fault("too-large", "the polygons have more corners than 32 bits can number"));
                 }
                 close_polygon(&mut self.mesh.polygons);
                 self.polygon_tags.push(tags[0]);

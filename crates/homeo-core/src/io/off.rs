@@ -55,9 +55,7 @@ fn read_header(scanner: &mut Scanner<'_>) -> Outcome<Layout> {
     let Some(mut prefix) = word.strip_suffix(b"OFF") else {
         return Err(scanner.fault("bad-header", format!("an OFF file begins with OFF, not with \"{}\"", show(word))));
     };
-    for (letters, flag) in
-        [(&b"ST"[..], &mut layout.texture), (b"C", &mut layout.color), (b"N", &mut layout.normal)]
-    {
+    for (letters, flag) in [(&b"ST"[..], &mut layout.texture), (b"C", &mut layout.color), (b"N", &mut layout.normal)] {
         if let Some(rest) = prefix.strip_prefix(letters) {
             (prefix, *flag) = (rest, true);
         }

@@ -31,9 +31,7 @@ fn flat(point: Point, [u, v]: [usize; 2]) -> [f64; 2] {
 /// three points are collinear. It is then one-to-one on the plane of the triangle.
 #[inline]
 pub fn faithful_projection(a: Point, b: Point, c: Point) -> Option<[usize; 2]> {
-    PROJECTIONS
-        .into_iter()
-        .find(|&axes| orient2d(flat(a, axes), flat(b, axes), flat(c, axes)) != Sign::Zero)
+    PROJECTIONS.into_iter().find(|&axes| orient2d(flat(a, axes), flat(b, axes), flat(c, axes)) != Sign::Zero)
 }
 
 /// Whether the closed segment and the closed triangle share a point.

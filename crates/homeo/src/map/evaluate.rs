@@ -43,7 +43,8 @@ impl<const K: usize> Foliation<K> {
         let weights = self.facet_weights(facet, weights);
         let sum: IBig = weights.iter().copied().sum();
         let coordinate = |axis: usize| -> Rational {
-            let total: Rational = weights.iter().zip(&values).map(|(w, v)| &Rational::from((*w).clone()) * &exact(v[axis])).sum();
+            let total: Rational =
+                weights.iter().zip(&values).map(|(w, v)| &Rational::from((*w).clone()) * &exact(v[axis])).sum();
             &total / &Rational::from(sum.clone())
         };
         [coordinate(0), coordinate(1), Rational::ZERO]

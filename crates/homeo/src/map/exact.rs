@@ -184,9 +184,7 @@ pub(super) fn whole<const K: usize>(values: &[Rational; K]) -> [IBig; K] {
         let shared = gcd(&common, &denominator);
         common / shared * denominator
     });
-    reduced(std::array::from_fn(|i| {
-        values[i].numerator() * (&common / IBig::from(values[i].denominator().clone()))
-    }))
+    reduced(std::array::from_fn(|i| values[i].numerator() * (&common / IBig::from(values[i].denominator().clone()))))
 }
 
 /// `numerator / denominator`, which is not zero.

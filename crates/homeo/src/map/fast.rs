@@ -9,9 +9,9 @@
 
 use homeo_core::mesh::{CellId, Facet};
 
+use super::Foliation;
 use super::exact::Sense;
 use super::locate::FloatLocation;
-use super::Foliation;
 
 /// Rounding cannot tell through which facet the leaf goes on.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +91,8 @@ impl<const K: usize> FastLeaf<K> {
             }
             let (here, there) = (f64::from(direction[best].unsigned_abs()), f64::from(direction[j].unsigned_abs()));
             let (mine, other) = (self.weights[best] * there, self.weights[j] * here);
-            let error = there * self.error(best) + here * self.error(j) + 4.0 * f64::EPSILON * (mine.abs() + other.abs());
+            let error =
+                there * self.error(best) + here * self.error(j) + 4.0 * f64::EPSILON * (mine.abs() + other.abs());
             if other + error < mine {
                 best = j;
             } else if mine + error >= other {

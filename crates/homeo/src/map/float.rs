@@ -72,10 +72,8 @@ impl<const K: usize> Foliation<K> {
         if safe <= 0.0 {
             return Err(Undecided);
         }
-        let fraction = Bounded {
-            value: (part.value / whole).clamp(0.0, 1.0),
-            error: (part.error + whole_error) / safe + ULPS,
-        };
+        let fraction =
+            Bounded { value: (part.value / whole).clamp(0.0, 1.0), error: (part.error + whole_error) / safe + ULPS };
         Ok(self.assembled(self.section_float(start, &back), fraction))
     }
 
@@ -111,7 +109,9 @@ impl<const K: usize> Foliation<K> {
     fn assembled(&self, (section, error): ([f64; 3], f64), fraction: Bounded) -> Enclosed {
         let t = fraction.value;
         match self.parts().target {
-            Target::Square => Enclosed { point: [section[0].clamp(0.0, 1.0), t, 0.0], radius: error.max(fraction.error) },
+            Target::Square => {
+                Enclosed { point: [section[0].clamp(0.0, 1.0), t, 0.0], radius: error.max(fraction.error) }
+            }
             Target::Cube => Enclosed {
                 point: [section[0].clamp(0.0, 1.0), section[1].clamp(0.0, 1.0), t],
                 radius: error.max(fraction.error),
@@ -177,11 +177,8 @@ impl<const K: usize> Foliation<K> {
         if q.iter().any(|x| !(0.0..=1.0).contains(x)) || (is_square && q[2] != 0.0) {
             return Err(outside);
         }
-        let (at, t) = if is_square {
-            (self.fast_on_edge(q[0]), q[1])
-        } else {
-            (self.fast_on_triangle([q[0], q[1]]), q[2])
-        };
+        let (at, t) =
+            if is_square { (self.fast_on_edge(q[0]), q[1]) } else { (self.fast_on_triangle([q[0], q[1]]), q[2]) };
         Ok(at.map(|at| (at, Goal::Fraction(t))))
     }
 
@@ -207,7 +204,11 @@ impl<const K: usize> Foliation<K> {
         }
         let parts = [area(q, b, c), area(a, q, c), area(a, b, q)];
         let shares = parts.into_iter().zip(signs).map(|((part, error), sign)| {
-            if sign == Sign::Zero { (0.0, 0.0) } else { ((part / whole).clamp(0.0, 1.0), (error + whole_error) / safe + ULPS) }
+            if sign == Sign::Zero {
+                (0.0, 0.0)
+            } else {
+                ((part / whole).clamp(0.0, 1.0), (error + whole_error) / safe + ULPS)
+            }
         });
         Some(self.fast_on_facet(facet, shares))
     }

@@ -402,11 +402,8 @@ fn exact_weights<const K: usize>(corners: &[[f64; 3]; K], point: &[Rational; 3])
     if K == 4 {
         let spans = [1, 2, 3].map(|i| minus(&exact[i], &exact[0]));
         let offset = minus(point, &exact[0]);
-        let normals = [
-            exact_cross(&spans[1], &spans[2]),
-            exact_cross(&spans[2], &spans[0]),
-            exact_cross(&spans[0], &spans[1]),
-        ];
+        let normals =
+            [exact_cross(&spans[1], &spans[2]), exact_cross(&spans[2], &spans[0]), exact_cross(&spans[0], &spans[1])];
         let volume = exact_dot(&spans[0], &normals[0]);
         (0..3).for_each(|i| weights[i + 1] = exact_dot(&normals[i], &offset));
         weights[0] = &volume - &weights[1..].iter().cloned().sum();

@@ -51,7 +51,9 @@ const ABSENT: u32 = u32::MAX;
 impl SectionIndex {
     pub fn new<const K: usize>(parts: &FoliationParts<K>, adjacency: &Adjacency<K>) -> Self {
         let vertices = match &parts.section {
-            Section::Arc { vertices, .. } | Section::Loop { vertices, .. } | Section::Square { vertices, .. } => vertices,
+            Section::Arc { vertices, .. } | Section::Loop { vertices, .. } | Section::Square { vertices, .. } => {
+                vertices
+            }
             Section::Centre => return Self { number: Vec::new(), facets: Vec::new(), tree: None },
         };
         let complex = parts.mesh.complex();
@@ -61,10 +63,8 @@ impl SectionIndex {
                 *slot = k as u32;
             }
         }
-        let mut facets: Vec<Facet> = adjacency
-            .boundary_facets()
-            .filter(|f| parts.directions[f.cell().index()][f.opposite()] > 0)
-            .collect();
+        let mut facets: Vec<Facet> =
+            adjacency.boundary_facets().filter(|f| parts.directions[f.cell().index()][f.opposite()] > 0).collect();
         let mut tree = None;
         if let Section::Square { coordinates, .. } = &parts.section {
             let boxes: Vec<Aabb> = facets

@@ -114,7 +114,8 @@ mod tests {
     fn loop_of_a_square_runs_with_the_mesh_on_the_left() {
         let complex = SimplicialComplex::<3>::from_indices(4, &[[0, 1, 2], [0, 2, 3]]).unwrap();
         let adjacency = complex.adjacency().unwrap();
-        let starts: Vec<_> = boundary_loop(&complex, &adjacency).iter().map(|&f| edge_start(&complex, f).raw()).collect();
+        let starts: Vec<_> =
+            boundary_loop(&complex, &adjacency).iter().map(|&f| edge_start(&complex, f).raw()).collect();
         assert_eq!(starts, [0, 1, 2, 3]);
     }
 }

@@ -32,7 +32,12 @@ impl<const K: usize> Stage<K> {
     }
 
     /// Stars simplices; masks of boundary facets follow their facets.
-    fn star(&mut self, source: &SourceMesh<K>, stars: &Stars, masks: &mut [Vec<u8>]) -> Result<Vec<CellId>, FoliationError> {
+    fn star(
+        &mut self,
+        source: &SourceMesh<K>,
+        stars: &Stars,
+        masks: &mut [Vec<u8>],
+    ) -> Result<Vec<CellId>, FoliationError> {
         let origins = self.mesh.star(source, &self.adjacency, &self.edges, stars)?;
         let before: Vec<Vec<u8>> = masks.iter().map(|mask| mask.clone()).collect();
         *self = Self::new(std::mem::replace(&mut self.mesh, RefinedMesh::unrefined(source)))?;
@@ -148,7 +153,8 @@ impl<const K: usize> Build<'_, K> {
         self.info.cells = stage.mesh.complex().cell_count();
         self.info.vertices = stage.mesh.complex().vertex_count();
         let Stage { mesh, adjacency, .. } = stage;
-        let parts = FoliationParts { target: self.target, mesh, directions, lengths, length_unit: unit, centre, section };
+        let parts =
+            FoliationParts { target: self.target, mesh, directions, lengths, length_unit: unit, centre, section };
         Ok(Foliation::from_parts(self.source.clone(), adjacency, parts))
     }
 
@@ -283,7 +289,12 @@ impl<const K: usize> Build<'_, K> {
     }
 
     /// Refines round the cells that a front could not take, or everything after several such tries.
-    fn refine_stuck(&mut self, stage: &mut Stage<K>, surroundings: &mut Surroundings, stuck: &Stuck) -> Result<(), FoliationError> {
+    fn refine_stuck(
+        &mut self,
+        stage: &mut Stage<K>,
+        surroundings: &mut Surroundings,
+        stuck: &Stuck,
+    ) -> Result<(), FoliationError> {
         let refinements = self.info.local_refinements + self.info.barycentric_refinements;
         let cells = stage.mesh.complex().cell_count();
         if refinements >= self.params.refinements || cells > self.params.most_cells {
@@ -295,7 +306,8 @@ impl<const K: usize> Build<'_, K> {
         self.begin("prepare")?;
         let mut stars = stage.no_stars();
         let everything = self.info.local_refinements >= 2 * (self.info.barycentric_refinements + 1);
-        let chosen: Vec<CellId> = if everything { stage.mesh.complex().cell_ids().collect() } else { stuck.remaining.clone() };
+        let chosen: Vec<CellId> =
+            if everything { stage.mesh.complex().cell_ids().collect() } else { stuck.remaining.clone() };
         for &cell in chosen.iter().filter(|&&cell| surroundings.centre.is_none_or(|(centre, _)| centre != cell)) {
             stars.cells[cell.index()] = true;
             stage.edges.of_cell(cell).iter().for_each(|edge| stars.edges[edge.index()] = true);

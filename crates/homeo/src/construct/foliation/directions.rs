@@ -174,7 +174,13 @@ impl<'a, const K: usize> Flow<'a, K> {
     fn moved_key(&self, index: usize, i: usize, other: usize, j: usize) -> Option<Moved> {
         let between = |low: f64, high: f64| {
             let middle = low + (high - low) / 2.0;
-            let middle = if high == f64::INFINITY { low + 1.0 } else if low == f64::NEG_INFINITY { high - 1.0 } else { middle };
+            let middle = if high == f64::INFINITY {
+                low + 1.0
+            } else if low == f64::NEG_INFINITY {
+                high - 1.0
+            } else {
+                middle
+            };
             (low < middle && middle < high).then_some(middle)
         };
         let neighbour_keys = |cell: usize, except: usize, sign: i8| {
@@ -216,7 +222,9 @@ impl<'a, const K: usize> Flow<'a, K> {
         let (here, there) = (self.corners[index], self.corners[other]);
         let mut matching = [j; K];
         for k in (0..K).filter(|&k| k != i) {
-            matching[k] = (0..K).find(|&l| l != j && there[l] == here[k]).expect("neighbours share the facet (please report this)");
+            matching[k] = (0..K)
+                .find(|&l| l != j && there[l] == here[k])
+                .expect("neighbours share the facet (please report this)");
         }
         matching
     }

@@ -9,6 +9,11 @@
 //! A cell and its facets decide freedom alone, but for a few vertices and edges that must be
 //! *untouched* (no cell around them removed) or *last* (no other cell around them left). Counters
 //! answer both at once, so a test costs constant time; see [`Conditions`].
+//!
+//! Around a vertex or edge of a parallel facet the cells form a half-ball. There the removed and
+//! the remaining ones must also meet the boundary in one piece each, which comes down to this: the
+//! first cell removed has a parallel facet there itself. (A front that reaches the boundary from
+//! inside would cut the remaining cells in two; the later conditions then never hold.)
 
 use homeo_core::mesh::{Adjacency, CELL_EDGES, CellId, EdgeIndex, SimplicialComplex, VertexId};
 
@@ -55,6 +60,9 @@ struct Conditions {
     vertex_last: u8,
     edge_untouched: u8,
     edge_last: u8,
+    /// Those of the untouched that the cell's own parallel facet does not contain.
+    vertex_inner: u8,
+    edge_inner: u8,
 }
 
 impl Conditions {
@@ -66,12 +74,14 @@ impl Conditions {
             let containing = all & !(1 << vertex);
             conditions.vertex_untouched |= u8::from(containing & inflow == 0) << vertex;
             conditions.vertex_last |= u8::from(containing & outflow == 0) << vertex;
+            conditions.vertex_inner |= u8::from(containing & (inflow | parallel) == 0) << vertex;
         }
         if K == 4 {
             for (edge, &[a, b]) in CELL_EDGES.iter().enumerate() {
                 let containing = all & !(1 << a) & !(1 << b);
                 conditions.edge_untouched |= u8::from(containing & inflow == 0) << edge;
                 conditions.edge_last |= u8::from(containing & outflow == 0) << edge;
+                conditions.edge_inner |= u8::from(containing & (inflow | parallel) == 0) << edge;
             }
         }
         conditions
@@ -83,18 +93,33 @@ struct Stars {
     /// Cells that remain, the virtual sink included.
     remaining: Vec<u32>,
     touched: Vec<bool>,
+    /// Whether it lies on a parallel facet, so that the cells around are a half-ball.
+    halved: Vec<bool>,
     /// Exclusive or of the remaining cells: when one remains, its id.
     last: Vec<u32>,
 }
 
 impl Stars {
     fn new(count: usize) -> Self {
-        Self { remaining: vec![0; count], touched: vec![false; count], last: vec![0; count] }
+        Self {
+            remaining: vec![0; count],
+            touched: vec![false; count],
+            halved: vec![false; count],
+            last: vec![0; count],
+        }
     }
 
     fn add(&mut self, index: usize, cell: CellId) {
         self.remaining[index] += 1;
         self.last[index] ^= cell.raw();
+    }
+
+    /// Whether the local vertices or edges that masks mark are untouched, not halved, and last.
+    #[inline]
+    fn allow(&self, at: impl Fn(usize) -> usize, [untouched, inner, last]: [u8; 3]) -> bool {
+        bits(untouched).all(|local| !self.touched[at(local)])
+            && bits(inner).all(|local| !self.halved[at(local)])
+            && bits(last).all(|local| self.remaining[at(local)] == 1)
     }
 
     /// Removes a cell; gives the last one if one cell remains.
@@ -168,21 +193,19 @@ impl<'a, const K: usize> Front<'a, K> {
             let is_source = surroundings.source[cell] & bit != 0;
             let is_sink = surroundings.sink[cell] & bit != 0;
             debug_assert!(!(is_source && is_sink), "a facet is source or sink, not both");
-            if !is_source && !is_sink {
-                self.parallel[cell] |= bit;
-                continue;
-            }
-            let corners = self.complex.cell(facet.cell());
-            for (local, vertex) in corners.iter().enumerate().filter(|&(local, _)| local != facet.opposite()) {
-                let _ = local;
-                self.vertices.touched[vertex.index()] |= is_source;
-                in_sink[0][vertex.index()] |= is_sink;
+            let is_parallel = !is_source && !is_sink;
+            self.parallel[cell] |= if is_parallel { bit } else { 0 };
+            let mut mark = |stars: &mut Stars, in_sink: &mut [bool], index: usize| {
+                stars.touched[index] |= is_source;
+                stars.halved[index] |= is_parallel;
+                in_sink[index] |= is_sink;
+            };
+            for vertex in self.complex.facet_vertices(facet.cell(), facet.opposite()) {
+                mark(&mut self.vertices, &mut in_sink[0], vertex.index());
             }
             if K == 4 {
                 for local in crate::refine::facet_edges::<K>(facet) {
-                    let edge = self.edges.of_cell(facet.cell())[local].index();
-                    self.edge_stars.touched[edge] |= is_source;
-                    in_sink[1][edge] |= is_sink;
+                    mark(&mut self.edge_stars, &mut in_sink[1], self.edges.of_cell(facet.cell())[local].index());
                 }
             }
         }
@@ -218,15 +241,12 @@ impl<'a, const K: usize> Front<'a, K> {
             return false;
         }
         let conditions = self.conditions[usize::from(parallel << 4 | inflow)];
-        let holds = |stars: &Stars, at: &dyn Fn(usize) -> usize, untouched: u8, last: u8| {
-            bits(untouched).all(|local| !stars.touched[at(local)])
-                && bits(last).all(|local| stars.remaining[at(local)] == 1)
-        };
+        let c = conditions;
         let corners = self.complex.cell(cell);
-        holds(&self.vertices, &|i| corners[i].index(), conditions.vertex_untouched, conditions.vertex_last)
+        self.vertices.allow(|i| corners[i].index(), [c.vertex_untouched, c.vertex_inner, c.vertex_last])
             && (K < 4 || {
                 let edges = self.edges.of_cell(cell);
-                holds(&self.edge_stars, &|i| edges[i].index(), conditions.edge_untouched, conditions.edge_last)
+                self.edge_stars.allow(|i| edges[i].index(), [c.edge_untouched, c.edge_inner, c.edge_last])
             })
     }
 

@@ -71,9 +71,10 @@ fn requested_corners<const K: usize>(
 ) -> Result<[usize; 4], RegionError> {
     let mut indices = [0; 4];
     for (index, corner) in indices.iter_mut().zip(corners) {
-        *index = facets.iter().position(|&f| edge_start(complex, f).raw() == corner).ok_or_else(|| {
-            RegionError::Requested(format!("corner {corner} is no boundary vertex of the mesh"))
-        })?;
+        *index = facets
+            .iter()
+            .position(|&f| edge_start(complex, f).raw() == corner)
+            .ok_or_else(|| RegionError::Requested(format!("corner {corner} is no boundary vertex of the mesh")))?;
     }
     let turns = (0..4).filter(|&i| indices[(i + 1) % 4] <= indices[i]).count();
     if turns != 1 {
@@ -85,7 +86,11 @@ fn requested_corners<const K: usize>(
 }
 
 /// Four starting facets that cut the loop into arcs of nearly equal length, each with an edge.
-pub(super) fn equal_arcs<const K: usize>(complex: &SimplicialComplex<K>, facets: &[Facet], positions: &[[f64; 3]]) -> [usize; 4] {
+pub(super) fn equal_arcs<const K: usize>(
+    complex: &SimplicialComplex<K>,
+    facets: &[Facet],
+    positions: &[[f64; 3]],
+) -> [usize; 4] {
     let n = facets.len();
     let mut reached = Vec::with_capacity(n + 1);
     reached.push(0.0);
@@ -98,7 +103,8 @@ pub(super) fn equal_arcs<const K: usize>(complex: &SimplicialComplex<K>, facets:
     for side in 1..4 {
         let aim = reached[n] * side as f64 / 4.0;
         let nearest = reached[..n].partition_point(|&r| r < aim);
-        let nearest = if nearest > 0 && aim - reached[nearest - 1] < reached[nearest] - aim { nearest - 1 } else { nearest };
+        let nearest =
+            if nearest > 0 && aim - reached[nearest - 1] < reached[nearest] - aim { nearest - 1 } else { nearest };
         corners[side] = nearest.clamp(corners[side - 1] + 1, n - (4 - side));
     }
     corners
@@ -238,8 +244,12 @@ fn grow_disk(
     while let Some(Reverse((_, t))) = queue.pop() {
         let cell = CellId::new(t);
         let corners = triangles.cell(cell);
-        let shared: Vec<usize> =
-            (0..3).filter(|&i| { let far = adjacency.across(cell, i); far.is_some() && inside[far.cell().index()] }).collect();
+        let shared: Vec<usize> = (0..3)
+            .filter(|&i| {
+                let far = adjacency.across(cell, i);
+                far.is_some() && inside[far.cell().index()]
+            })
+            .collect();
         // One shared edge: the vertex opposite must be new. Two: the disk closes round a vertex.
         let stays_disk = match shared[..] {
             [] => disk.is_empty(),
