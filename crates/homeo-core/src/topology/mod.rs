@@ -1,1 +1,15 @@
-//! stub
+//! What a mesh is.
+mod connectivity;
+mod gluing;
+mod intersections;
+mod links;
+mod measure;
+mod report;
+mod shape;
+mod surface;
+mod violation;
+
+pub use intersections::{SelfIntersections, self_intersections};
+pub use report::*;
+pub use surface::analyse_triangles;
+pub use violation::{ElementKind, MOST_LISTED, Severity, Violation};
