@@ -1,4 +1,6 @@
 //! What a mesh is.
+mod ball;
+mod collapse;
 mod connectivity;
 mod gluing;
 mod intersections;
@@ -8,8 +10,10 @@ mod report;
 mod shape;
 mod surface;
 mod violation;
+mod volume;
 
 pub use intersections::{SelfIntersections, self_intersections};
 pub use report::*;
 pub use surface::analyse_triangles;
 pub use violation::{ElementKind, MOST_LISTED, Severity, Violation};
+pub use volume::analyse_tetrahedra;

@@ -7,7 +7,7 @@ use super::Violation;
 /// Whether to look for triangles that meet where they should not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Intersections {
-    /// Only where another answer depends on it (whether an embedded volume is a ball).
+    /// Only where another answer depends on it: whether a volume is embedded, hence perhaps a ball.
     #[default]
     WhereNeeded,
     /// Find them.
@@ -256,8 +256,8 @@ pub struct VolumeReport {
     pub embedded: Verdict,
     /// Whether it is a ball.
     pub ball: Verdict,
-    /// What can be said of handles, in a sentence.
-    pub handle_body: Option<String>,
+    /// Whether it is a handle body (a ball counts, with no handles).
+    pub handle_body: Verdict,
     /// All that is wrong.
     pub violations: Vec<Violation>,
 }

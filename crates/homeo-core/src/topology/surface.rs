@@ -250,9 +250,7 @@ fn measure(
             let normal = cross(x, y);
             let double_area = norm(normal);
             area += double_area / 2.0;
-            if double_area > 0.0 {
-                [(x, z), (y, x), (z, y)].iter().for_each(|&(u, v)| corners.add(-dot(u, v), double_area));
-            }
+            [(x, z), (y, x), (z, y)].iter().for_each(|&(u, v)| corners.add(-dot(u, v), double_area));
             normal
         })
         .collect();
