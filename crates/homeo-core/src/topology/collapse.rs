@@ -13,12 +13,12 @@
 use std::collections::VecDeque;
 
 use super::gluing::Gluing;
-use crate::mesh::{CELL_EDGES, EdgeIndex, TetrahedronComplex};
+use crate::mesh::{EdgeIndex, TetrahedronComplex};
 
 /// The search tries again in other orders until it has taken this many tetrahedra off.
 const MOST_STEPS: usize = 4_000_000;
 
-/// The local edges of the facet opposite each vertex, by [`CELL_EDGES`].
+/// The local edges of the facet opposite each vertex, by [`crate::mesh::CELL_EDGES`].
 const FACET_EDGES: [[usize; 3]; 4] = [[2, 4, 5], [1, 3, 5], [0, 3, 4], [0, 1, 2]];
 
 /// The local edge between two local vertices.
@@ -251,6 +251,7 @@ fn take(queue: &mut VecDeque<u32>, order: &mut Order) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::CELL_EDGES;
 
     #[test]
     fn tables_agree_with_the_numbering_of_edges() {

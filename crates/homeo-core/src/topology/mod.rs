@@ -9,6 +9,8 @@ mod measure;
 mod report;
 mod shape;
 mod surface;
+#[cfg(test)]
+mod tests;
 mod violation;
 mod volume;
 

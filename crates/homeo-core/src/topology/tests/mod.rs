@@ -1,0 +1,4 @@
+//! Tests of the analysis by class of mesh.
+
+mod data;
+mod plain_readers;
