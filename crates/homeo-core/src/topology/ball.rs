@@ -64,6 +64,8 @@ pub(super) struct Placement {
     pub flat_cells: usize,
     /// Pairs of boundary triangles that meet; `None` where not looked for.
     pub boundary_intersections: Option<usize>,
+    /// Boundary vertices at the point of another one.
+    pub boundary_vertices_merged: usize,
     /// Boundary pieces that enclose a positive volume when seen from inside the mesh.
     pub outer_pieces: usize,
 }
@@ -81,6 +83,9 @@ pub(super) fn decide_embedded(facts: &Facts, placement: Option<&Placement>) -> V
     }
     if !placement.uniform {
         return verdict(Answer::No, "two tetrahedra lie on the same side of a common triangle");
+    }
+    if placement.boundary_vertices_merged > 0 {
+        return verdict(Answer::No, "boundary vertices lie at the same point");
     }
     match placement.boundary_intersections {
         None => verdict(Answer::Unknown, "the boundary was not searched for self-intersections"),

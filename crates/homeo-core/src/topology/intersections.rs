@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::measure::Point;
+use super::measure::{Point, coincident};
 use crate::mesh::{CellId, TriangleComplex, VertexId};
 use crate::predicate::{
     is_degenerate_triangle, triangles_meet, triangles_meet_beyond_edge, triangles_meet_beyond_vertex,
@@ -24,10 +24,10 @@ pub struct SelfIntersections {
 /// Pairs of triangles that share a point other than those of their common vertices or edge.
 ///
 /// # Guarantee
-/// Decided by exact signs. Vertices are the same when their numbers are: triangles that touch along
-/// equal coordinates with different numbers are reported. Left out are copies of a triangle,
-/// triangles that repeat a vertex, and triangles of area zero against their neighbours; the analysis
-/// of connectivity and degenerate cells reports those.
+/// Decided by exact signs. Vertices at equal points count as one here, so that the two banks of a cut
+/// may touch; the analysis reports such vertices apart. Left out are copies of a triangle with the
+/// same vertex numbers, triangles that repeat a vertex, and triangles of area zero against their
+/// neighbours; the analysis of connectivity and degenerate cells reports those.
 ///
 /// # Preconditions
 /// One point for each vertex, with coordinates as [`crate::predicate`] asks for.
@@ -43,13 +43,25 @@ pub struct SelfIntersections {
 /// assert_eq!(self_intersections(&positions, &complex).pairs.len(), 1);
 /// ```
 pub fn self_intersections(positions: &[Point], complex: &TriangleComplex) -> SelfIntersections {
-    let corners = |cell: usize| complex.cells()[cell].map(|v| positions[v.index()]);
-    let boxes: Vec<Aabb> = (0..complex.cell_count()).map(|cell| Aabb::of(&corners(cell))).collect();
+    find_with(positions, complex, &coincident(positions))
+}
+
+/// Same, with the pairs of [`coincident`] vertices at hand.
+pub(super) fn find_with(positions: &[Point], complex: &TriangleComplex, same: &[[u32; 2]]) -> SelfIntersections {
+    let cells = complex.cells();
+    let boxes: Vec<Aabb> = cells.iter().map(|cell| Aabb::of(&cell.map(|v| positions[v.index()]))).collect();
+    let merged: Option<Vec<[VertexId; 3]>> = (!same.is_empty()).then(|| {
+        let mut first: Vec<u32> = (0..positions.len() as u32).collect();
+        same.iter().for_each(|&[kept, copy]| first[copy as usize] = kept);
+        cells.iter().map(|cell| cell.map(|v| VertexId::from(first[v.index()]))).collect()
+    });
+    let merged = merged.as_deref().unwrap_or(cells);
     let tree = Tree::new(&boxes);
     drop(boxes);
     let mut pairs = Vec::new();
     let complete = tree.overlapping_pairs(|first, second| {
-        if meet_illegally(positions, complex.cells()[first], complex.cells()[second]) {
+        let is_copy = || cells[first].iter().all(|v| cells[second].contains(v));
+        if meet_illegally(positions, merged[first], merged[second], is_copy) {
             pairs.push([CellId::new(first), CellId::new(second)]);
         }
         if pairs.len() < MOST_PAIRS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
@@ -59,15 +71,23 @@ pub fn self_intersections(positions: &[Point], complex: &TriangleComplex) -> Sel
 }
 
 /// Whether two triangles share a point that no common vertex or edge explains.
-fn meet_illegally(positions: &[Point], first: [VertexId; 3], second: [VertexId; 3]) -> bool {
+fn meet_illegally(
+    positions: &[Point],
+    first: [VertexId; 3],
+    second: [VertexId; 3],
+    is_copy: impl Fn() -> bool,
+) -> bool {
     let is_common = first.map(|v| second.contains(&v));
     let common = is_common.iter().filter(|&&c| c).count();
     let at = |v: VertexId| positions[v.index()];
     if common == 0 {
         return !repeats(first) && !repeats(second) && triangles_meet(first.map(at), second.map(at));
     }
-    if repeats(first) || repeats(second) || common == 3 {
+    if repeats(first) || repeats(second) {
         return false;
+    }
+    if common == 3 {
+        return !is_copy();
     }
     if common == 1 {
         let [apex, a, b] = rotated(first, |v| second.contains(&v)).map(at);

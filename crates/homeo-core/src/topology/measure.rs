@@ -95,23 +95,6 @@ impl<'a> Points<'a> {
         [0, 1, 2].map(|i| (q[i] - p[i]) * self.scale)
     }
 
-    /// Vertices at the position of another, first of its kind left out.
-    pub(super) fn coincident(&self) -> Vec<[u32; 2]> {
-        // Adding zero makes -0 equal to 0.
-        let key = |v: u32| self.positions[v as usize].map(|x| (x + 0.0).to_bits());
-        let mut order: Vec<(u64, u32)> = (0..self.positions.len() as u32).map(|v| (key(v)[0], v)).collect();
-        order.sort_unstable();
-        let mut pairs = Vec::new();
-        for same_x in order.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1) {
-            same_x.sort_unstable_by_key(|&(_, v)| (key(v), v));
-            for same in same_x.chunk_by(|a, b| key(a.1) == key(b.1)) {
-                pairs.extend(same[1..].iter().map(|&(_, v)| [same[0].1, v]));
-            }
-        }
-        pairs.sort_unstable();
-        pairs
-    }
-
     /// Six times the volume between the triangles and a corner of the hull: its exact sign and an
     /// estimate of the volume itself. For a closed oriented surface it is the volume enclosed.
     pub(super) fn enclosed_volume(&self, triangles: impl Iterator<Item = [usize; 3]> + Clone) -> (Sign, f64) {
@@ -141,6 +124,23 @@ impl<'a> Points<'a> {
         };
         triangles.map(determinant).sum::<Rational>().sign()
     }
+}
+
+/// Each vertex at the point of an earlier one, after the first vertex there; ascending.
+pub(super) fn coincident(positions: &[Point]) -> Vec<[u32; 2]> {
+    // Adding zero makes -0 equal to 0.
+    let key = |v: u32| positions[v as usize].map(|x| (x + 0.0).to_bits());
+    let mut order: Vec<(u64, u32)> = (0..positions.len() as u32).map(|v| (key(v)[0], v)).collect();
+    order.sort_unstable();
+    let mut pairs = Vec::new();
+    for same_x in order.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1) {
+        same_x.sort_unstable_by_key(|&(_, v)| (key(v), v));
+        for same in same_x.chunk_by(|a, b| key(a.1) == key(b.1)) {
+            pairs.extend(same[1..].iter().map(|&(_, v)| [same[0].1, v]));
+        }
+    }
+    pairs.sort_unstable();
+    pairs
 }
 
 #[inline]

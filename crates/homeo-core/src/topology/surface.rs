@@ -1,8 +1,8 @@
 //! Analysis of triangle meshes.
 
 use super::gluing::ProperCells;
-use super::intersections::self_intersections;
-use super::measure::{AngleTracker, Point, Points, cross, dot, norm};
+use super::intersections::find_with;
+use super::measure::{AngleTracker, Point, Points, coincident, cross, dot, norm};
 use super::report::{BoundaryLoop, Intersections, Options, SurfaceGeometry, SurfacePart, SurfaceReport};
 use super::shape::SurfaceShape;
 use super::violation::{ElementKind, Severity, Violations};
@@ -45,11 +45,12 @@ pub fn analyse_triangles(positions: &[Point], complex: &TriangleComplex, options
     let geometry = points.map(|points| measure(points, complex, &proper, &parts, &mut violations));
     if let Some(points) = points {
         report_inside_out(points, &proper, &shape, &parts, &mut violations);
-        report_coincident(points, &mut violations);
     }
+    let same = points.map_or_else(Vec::new, |points| coincident(points.positions));
+    report_coincident(&same, &mut violations);
     let self_intersections = points
         .filter(|_| options.intersections == Intersections::Find)
-        .map(|points| find_intersections(points, complex, &mut violations));
+        .map(|points| find_intersections(points, complex, &same, &mut violations));
 
     let edge_manifold = proper.gluing.crowded.is_empty() && proper.is_complete();
     let vertex_manifold = shape.pinched.is_empty() && proper.gluing.crowded.is_empty();
@@ -142,8 +143,7 @@ pub(super) fn report_components(components: usize, violations: &mut Violations) 
     }
 }
 
-pub(super) fn report_coincident(points: Points<'_>, violations: &mut Violations) {
-    let pairs = points.coincident();
+pub(super) fn report_coincident(pairs: &[[u32; 2]], violations: &mut Violations) {
     let vertices: Vec<_> = pairs.iter().map(|&[_, v]| [v]).collect();
     let advice = "at exactly the same point as an earlier vertex; merge them (`--weld`) unless the mesh is cut there on \
                   purpose";
@@ -295,15 +295,17 @@ fn describe_loops(proper: &ProperCells<'_, 3>, shape: &SurfaceShape, points: Opt
     shape.loops.iter().map(|boundary| describe(&boundary.facets)).collect()
 }
 
-fn find_intersections(points: Points<'_>, complex: &TriangleComplex, violations: &mut Violations) -> usize {
-    let found = self_intersections(points.positions, complex);
+fn find_intersections(
+    points: Points<'_>,
+    complex: &TriangleComplex,
+    same: &[[u32; 2]],
+    violations: &mut Violations,
+) -> usize {
+    let found = find_with(points.positions, complex, same);
     let listed: Vec<_> = found.pairs.iter().map(|pair| pair.map(CellId::raw)).collect();
-    let advice = if found.complete {
-        "these triangles meet away from their common corners; move their vertices apart (or merge vertices at equal \
-         points with `--weld`)"
-    } else {
-        "these triangles meet away from their common corners; the search stopped there. If the vertices of neighbours \
-         were never merged, `--weld` does it"
+    let advice = match found.complete {
+        true => "these triangles meet away from their common corners; move their vertices apart",
+        false => "these triangles meet away from their common corners, and the search stopped there; move them apart",
     };
     violations.add("self-intersection", Severity::Error, ElementKind::CellPair, &listed, advice);
     found.pairs.len()

@@ -5,7 +5,7 @@ use super::connectivity::{Corners, Sheets};
 use super::gluing::{Gluing, ProperCells};
 use super::intersections::self_intersections;
 use super::links::{EdgeCounts, bad_links, split_edges};
-use super::measure::{AngleTracker, Point, Points, cross, dot, norm};
+use super::measure::{AngleTracker, Point, Points, coincident, cross, dot, norm};
 use super::report::{Intersections, Options, VolumeBoundary, VolumeGeometry, VolumeReport};
 use super::shape::{SurfaceShape, vertices_on_crowded_facets};
 use super::surface::{report_cells, report_coincident, report_components, report_orientation, triangles_of_sheet};
@@ -50,7 +50,9 @@ pub fn analyse_tetrahedra(positions: &[Point], complex: &TetrahedronComplex, opt
     let facts = parts.facts();
     let mut placement = points.zip(signs.as_deref()).map(|(points, signs)| parts.placement(points, signs));
     if let (Some(points), Some(placement)) = (points, &mut placement) {
-        report_coincident(points, &mut violations);
+        let same = coincident(points.positions);
+        report_coincident(&same, &mut violations);
+        placement.boundary_vertices_merged = parts.merged_on_boundary(&same);
         let undecided = placement.uniform && placement.flat_cells == 0 && facts.components == 1;
         if undecided || options.intersections == Intersections::Find {
             placement.boundary_intersections = Some(parts.find_intersections(points, &mut violations));
@@ -242,7 +244,18 @@ impl<'a> Anatomy<'a> {
             count => (0..count.min(MOST_PIECES)).filter(is_outer).count(),
         };
         let flat_cells = signs.iter().filter(|&&sign| sign == Sign::Zero).count();
-        Placement { uniform, flat_cells, boundary_intersections: None, outer_pieces }
+        Placement { uniform, flat_cells, boundary_intersections: None, boundary_vertices_merged: 0, outer_pieces }
+    }
+
+    /// How many boundary vertices lie at the point of another one.
+    fn merged_on_boundary(&self, same: &[[u32; 2]]) -> usize {
+        let on_boundary = |&v: &u32| self.proper.gluing.on_boundary[v as usize];
+        let groups = same.chunk_by(|a, b| a[0] == b[0]);
+        let count = |group: &[[u32; 2]]| {
+            let copies = group.iter().map(|pair| pair[1]);
+            copies.chain([group[0][0]]).filter(on_boundary).count().saturating_sub(1)
+        };
+        groups.map(count).sum()
     }
 
     fn find_intersections(&self, points: Points<'_>, violations: &mut Violations) -> usize {
