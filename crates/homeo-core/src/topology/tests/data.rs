@@ -10,7 +10,7 @@ use crate::mesh::{TetrahedronComplex, TriangleComplex};
 use crate::topology::*;
 
 /// The folder named by `HOMEO_DATA`, or the usual place beside the checkout.
-fn folder() -> Option<PathBuf> {
+pub fn folder() -> Option<PathBuf> {
     let usual = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("HOMEO_DATA").map_or(usual, PathBuf::from);
     folder.join("manifest.json").is_file().then_some(folder)
