@@ -31,9 +31,7 @@ fn flat(point: Point, [u, v]: [usize; 2]) -> [f64; 2] {
 /// three points are collinear. It is then one-to-one on the plane of the triangle.
 #[inline]
 pub fn faithful_projection(a: Point, b: Point, c: Point) -> Option<[usize; 2]> {
-    PROJECTIONS
-        .into_iter()
-        .find(|&axes| orient2d(flat(a, axes), flat(b, axes), flat(c, axes)) != Sign::Zero)
+    PROJECTIONS.into_iter().find(|&axes| orient2d(flat(a, axes), flat(b, axes), flat(c, axes)) != Sign::Zero)
 }
 
 /// Whether the closed segment and the closed triangle share a point.
@@ -47,8 +45,18 @@ pub fn faithful_projection(a: Point, b: Point, c: Point) -> Option<[usize; 2]> {
 /// assert!(!segment_meets_triangle([[0.75, 0.75, -1.0], [0.75, 0.75, 1.0]], triangle));
 /// ```
 pub fn segment_meets_triangle([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
+    // Saves exact signs among neighbours in one plane, where they are slow.
+    if !boxes_meet([p, q], [a, b, c]) {
+        return false;
+    }
     let sides = [orient3d(a, b, c, p), orient3d(a, b, c, q)];
     segment_at_sides_meets([p, q], sides, [a, b, c])
+}
+
+/// Whether the bounding boxes of a segment and of a triangle share a point.
+#[inline]
+fn boxes_meet([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
+    (0..3).all(|i| p[i].min(q[i]) <= a[i].max(b[i]).max(c[i]) && a[i].min(b[i]).min(c[i]) <= p[i].max(q[i]))
 }
 
 /// Same, when the sides of the triangle's plane on which the ends lie are already known.

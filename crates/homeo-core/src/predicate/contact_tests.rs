@@ -152,9 +152,7 @@ fn segments_meet_as_the_oracle_says() {
         // point, which lies on a b or not.
         let part = common_part(&[c, d], [a, b, apex]);
         let direction = minus(&exact(b), &exact(a));
-        let expected = part
-            .iter()
-            .any(|p| cross(&direction, &minus(p, &exact(a))).iter().all(|x| x.is_zero()));
+        let expected = part.iter().any(|p| cross(&direction, &minus(p, &exact(a))).iter().all(|x| x.is_zero()));
         assert_eq!(segments_meet([a, b], [c, d]), expected, "{a:?} {b:?} {c:?} {d:?}");
         hits += usize::from(expected);
     }

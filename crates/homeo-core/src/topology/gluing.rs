@@ -212,8 +212,13 @@ impl<'a, const K: usize> ProperCells<'a, K> {
             cells.filter(move |(_, cell)| repeats(cell) == wanted).map(|(index, _)| index as u32)
         };
         let repeating: Vec<u32> = of_kind(true).collect();
-        let mut proper =
-            Self { complex: Cow::Borrowed(complex), gluing: empty_gluing(), original: None, repeating, duplicates: Vec::new() };
+        let mut proper = Self {
+            complex: Cow::Borrowed(complex),
+            gluing: empty_gluing(),
+            original: None,
+            repeating,
+            duplicates: Vec::new(),
+        };
         if !proper.repeating.is_empty() {
             proper.keep(complex, of_kind(false).collect());
         }
@@ -232,11 +237,9 @@ impl<'a, const K: usize> ProperCells<'a, K> {
     /// Restricts the complex to the cells `kept` of the mesh.
     fn keep(&mut self, mesh: &SimplicialComplex<K>, kept: Vec<u32>) {
         let cells = kept.iter().map(|&cell| mesh.cells()[cell as usize]).collect();
-        // The indices were in range before.
-        if let Ok(complex) = SimplicialComplex::new(mesh.vertex_count(), cells) {
-            self.complex = Cow::Owned(complex);
-            self.original = Some(kept);
-        }
+        let complex = SimplicialComplex::new(mesh.vertex_count(), cells);
+        self.complex = Cow::Owned(complex.expect("indices were in range before; please report this"));
+        self.original = Some(kept);
     }
 
     /// The number of a cell in the mesh as given.

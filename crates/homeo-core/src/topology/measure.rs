@@ -75,7 +75,10 @@ impl<'a> Points<'a> {
             return;
         }
         let message = if !USUAL_DIAGONALS.contains(&self.diagonal) {
-            format!("the diagonal of the bounding box is {:e}: scale the mesh, or make sure that its unit is meant", self.diagonal)
+            format!(
+                "the diagonal of the bounding box is {:e}: scale the mesh, or make sure that its unit is meant",
+                self.diagonal
+            )
         } else if farthest > FAR_AWAY * self.diagonal {
             format!(
                 "coordinates reach {farthest:e} while the bounding box has diagonal {:e}: few digits are left for the \

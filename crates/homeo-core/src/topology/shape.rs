@@ -58,7 +58,8 @@ impl SurfaceShape {
         let used_vertices = (0..complex.vertex_count()).filter(|&v| !corners.at(v).is_empty()).count();
         let loops = if gluing.crowded.is_empty() { boundary_loops(complex, gluing) } else { Vec::new() };
         let manifold = gluing.crowded.is_empty() && pinched.is_empty();
-        let mut shape = Self { corners, sheets, components, pinched, loops, pieces: Vec::new(), used_vertices, manifold };
+        let mut shape =
+            Self { corners, sheets, components, pinched, loops, pieces: Vec::new(), used_vertices, manifold };
         if manifold {
             shape.pieces = shape.count_pieces(complex);
         }

@@ -138,7 +138,8 @@ pub(super) fn report_orientation<const K: usize>(
 
 pub(super) fn report_components(components: usize, violations: &mut Violations) {
     if components > 1 {
-        let message = format!("the mesh falls into {components} pieces: where one piece is asked for, pass them one by one");
+        let message =
+            format!("the mesh falls into {components} pieces: where one piece is asked for, pass them one by one");
         violations.add_general("several-components", Severity::Warning, components, message);
     }
 }
@@ -310,4 +311,3 @@ fn find_intersections(
     violations.add("self-intersection", Severity::Error, ElementKind::CellPair, &listed, advice);
     found.pairs.len()
 }
-

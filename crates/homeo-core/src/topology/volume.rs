@@ -120,8 +120,8 @@ impl Skin {
             triangle
         };
         let triangles = proper.gluing.boundary_facets().map(outward).collect();
-        // The numbers are below the number of originals by construction.
-        let complex = TriangleComplex::new(originals.len(), triangles).unwrap_or_else(|_| empty_surface());
+        let complex = TriangleComplex::new(originals.len(), triangles)
+            .expect("boundary vertices are numbered below their count; please report this");
         let gluing = Gluing::new(&complex);
         let shape = SurfaceShape::new(&complex, &gluing);
         Self { complex, gluing, shape, originals }
@@ -145,10 +145,6 @@ impl Skin {
             genera: genera.take(MOST_PIECES).collect(),
         }
     }
-}
-
-fn empty_surface() -> TriangleComplex {
-    TriangleComplex::from_indices(0, &[]).unwrap_or_else(|_| unreachable!("no cell, no index"))
 }
 
 /// Everything about a tetrahedral complex that does not need coordinates.
@@ -285,22 +281,14 @@ impl<'a> Anatomy<'a> {
             vertices.all(|v| gluing.on_boundary[v.index()])
         };
         let glued = self.proper.complex.cell_ids().flat_map(|cell| {
-            let lower = move |&i: &usize| gluing.across[cell.index()][i].is_some_and_above(cell);
+            let lower = move |&i: &usize| {
+                let across = gluing.across[cell.index()][i];
+                across.is_some() && across.cell() > cell
+            };
             (0..4).filter(lower).map(move |i| Facet::new(cell, i))
         });
         let crowded = gluing.crowded.iter().map(|group| group[0]);
         glued.chain(crowded).filter(|&facet| all_on_boundary(facet)).count()
-    }
-}
-
-/// Whether there is a cell across, with a higher number.
-trait Above {
-    fn is_some_and_above(self, cell: crate::mesh::CellId) -> bool;
-}
-
-impl Above for Facet {
-    fn is_some_and_above(self, cell: crate::mesh::CellId) -> bool {
-        self.is_some() && self.cell() > cell
     }
 }
 

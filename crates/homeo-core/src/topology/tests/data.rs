@@ -1,5 +1,8 @@
 //! Agreement with the manifest of the development data, where it is at hand.
 
+// Times are printed on request.
+#![allow(clippy::print_stderr)]
+
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -136,7 +139,10 @@ fn volumes_agree_with_the_manifest() {
         if std::env::var_os("HOMEO_TIMES").is_some() {
             let (ball, handles) = (&report.ball, &report.handle_body);
             eprintln!("{file}: {} cells, {:?}: ball {:?}: {}", report.cells, start.elapsed(), ball.answer, ball.reason);
-            eprintln!("    embedded {:?}; handle body {:?}: {}", report.embedded.answer, handles.answer, handles.reason);
+            eprintln!(
+                "    embedded {:?}; handle body {:?}: {}",
+                report.embedded.answer, handles.answer, handles.reason
+            );
             let start = Instant::now();
             let ball = volume(&mesh, true).ball;
             eprintln!("    without coordinates: {:?}: ball {:?}: {}", start.elapsed(), ball.answer, ball.reason);

@@ -213,3 +213,25 @@ fn nothing_at_all() {
     let report = analyse_triangles(&points, &TriangleComplex::from_indices(2, &[]).unwrap(), Options::default());
     assert_eq!(codes(&report.violations), ["no-cells", "isolated-vertex", "coincident-vertices"]);
 }
+
+/// The tree leaves no pair out: every pair of triangles in question, one by one.
+#[test]
+fn the_search_agrees_with_all_pairs() {
+    let surface = torus(12, 9).with(&torus(9, 8), [1.1, 0.3, 0.2]).with(&octahedron(), [2.0, 0.05, 0.01]);
+    let complex = surface.complex();
+    let found = self_intersections(&surface.positions, &complex);
+    let mut naive = Vec::new();
+    for (i, a) in surface.triangles.iter().enumerate() {
+        for (j, b) in surface.triangles.iter().enumerate().skip(i + 1) {
+            if a.iter().all(|v| !b.contains(v)) {
+                let [p, q] = [a, b].map(|t| t.map(|v| surface.positions[v as usize]));
+                if crate::predicate::triangles_meet(p, q) {
+                    naive.push([i, j]);
+                }
+            }
+        }
+    }
+    let found: Vec<_> = found.pairs.iter().map(|pair| pair.map(|cell| cell.index())).collect();
+    assert!(found.len() > 50);
+    assert_eq!(found, naive);
+}
