@@ -29,6 +29,14 @@ fn flat(point: Point, [u, v]: [usize; 2]) -> [f64; 2] {
 
 /// Axes of a projection under which `a b c` keeps a positive or negative area; `None` when the
 /// three points are collinear. It is then one-to-one on the plane of the triangle.
+///
+/// ```
+/// use homeo_core::predicate::faithful_projection;
+/// // In the plane x = 0, the first two coordinates do not tell.
+/// let corners = [[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// assert_eq!(faithful_projection(corners[0], corners[1], corners[2]), Some([1, 2]));
+/// assert_eq!(faithful_projection(corners[0], corners[1], corners[1]), None);
+/// ```
 #[inline]
 pub fn faithful_projection(a: Point, b: Point, c: Point) -> Option<[usize; 2]> {
     PROJECTIONS.into_iter().find(|&axes| orient2d(flat(a, axes), flat(b, axes), flat(c, axes)) != Sign::Zero)
@@ -96,6 +104,13 @@ fn flat_segments_meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
 }
 
 /// Whether two closed segments in space share a point; both may be degenerate.
+///
+/// ```
+/// use homeo_core::predicate::segments_meet;
+/// let along = [[0.0; 3], [3.0, 3.0, 3.0]];
+/// assert!(segments_meet(along, [[1.0, 1.0, 1.0], [1.0, 1.0, 9.0]]));
+/// assert!(!segments_meet(along, [[1.0, 1.0, 2.0], [1.0, 1.0, 9.0]]));
+/// ```
 pub fn segments_meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     if orient3d(a, b, c, d) != Sign::Zero {
         return false;
@@ -192,6 +207,13 @@ pub fn triangles_meet(first: [Point; 3], second: [Point; 3]) -> bool {
 /// Their common part is convex and holds the apex. If it holds another point, the ray from the apex
 /// through it leaves one of the triangles first, across the edge opposite the apex: hence the test
 /// of these two edges decides.
+///
+/// ```
+/// use homeo_core::predicate::triangles_meet_beyond_vertex;
+/// let (apex, first) = ([0.0; 3], [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
+/// assert!(triangles_meet_beyond_vertex(apex, first, [[1.0, 1.0, 1.0], [1.0, 1.0, -1.0]]));
+/// assert!(!triangles_meet_beyond_vertex(apex, first, [[-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0]]));
+/// ```
 pub fn triangles_meet_beyond_vertex(apex: Point, first: [Point; 2], second: [Point; 2]) -> bool {
     // As in `triangles_meet`; a line through the apex separates, too, as it meets the other triangle
     // in the apex alone.
@@ -213,6 +235,13 @@ pub fn triangles_meet_beyond_vertex(apex: Point, first: [Point; 2], second: [Poi
 /// Neither triangle is degenerate.
 ///
 /// They do if and only if they lie in one plane on the same side of the edge.
+///
+/// ```
+/// use homeo_core::predicate::triangles_meet_beyond_edge;
+/// let edge = [[0.0; 3], [1.0, 0.0, 0.0]];
+/// assert!(triangles_meet_beyond_edge(edge, [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]), "folded flat");
+/// assert!(!triangles_meet_beyond_edge(edge, [0.0, 1.0, 0.0], [1.0, -1.0, 0.0]));
+/// ```
 pub fn triangles_meet_beyond_edge([u, v]: [Point; 2], first: Point, second: Point) -> bool {
     if orient3d(u, v, first, second) != Sign::Zero {
         return false;

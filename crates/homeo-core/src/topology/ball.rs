@@ -3,11 +3,11 @@
 
 use super::collapse::collapses_to_graph;
 use super::gluing::ProperCells;
-use super::report::{Answer, Verdict};
+use super::report::{Answer, Finding};
 
 /// Yes, no or unknown with the reason.
-fn verdict(answer: Answer, reason: impl Into<String>) -> Verdict {
-    Verdict::new(answer, reason)
+fn finding(answer: Answer, reason: impl Into<String>) -> Finding {
+    Finding::new(answer, reason)
 }
 
 /// What was found out about the complex.
@@ -71,45 +71,45 @@ pub(super) struct Placement {
 }
 
 /// Whether the coordinates place the complex in space one-to-one.
-pub(super) fn decide_embedded(facts: &Facts, placement: Option<&Placement>) -> Verdict {
+pub(super) fn decide_embedded(facts: &Facts, placement: Option<&Placement>) -> Finding {
     let Some(placement) = placement else {
-        return verdict(Answer::Unknown, "there are no coordinates to judge by");
+        return finding(Answer::Unknown, "there are no coordinates to judge by");
     };
     if placement.flat_cells > 0 {
-        return verdict(Answer::No, format!("{} tetrahedra have volume zero", placement.flat_cells));
+        return finding(Answer::No, format!("{} tetrahedra have volume zero", placement.flat_cells));
     }
     if let Some(reason) = facts.not_connected_manifold() {
-        return verdict(Answer::Unknown, format!("not decided for this complex: {reason}"));
+        return finding(Answer::Unknown, format!("not decided for this complex: {reason}"));
     }
     if !placement.uniform {
-        return verdict(Answer::No, "two tetrahedra lie on the same side of a common triangle");
+        return finding(Answer::No, "two tetrahedra lie on the same side of a common triangle");
     }
     if placement.boundary_vertices_merged > 0 {
-        return verdict(Answer::No, "boundary vertices lie at the same point");
+        return finding(Answer::No, "boundary vertices lie at the same point");
     }
     match placement.boundary_intersections {
-        None => verdict(Answer::Unknown, "the boundary was not searched for self-intersections"),
-        Some(0) if placement.outer_pieces == 1 => verdict(
+        None => finding(Answer::Unknown, "the boundary was not searched for self-intersections"),
+        Some(0) if placement.outer_pieces == 1 => finding(
             Answer::Yes,
             "all tetrahedra have one sign and the boundary does not meet itself, hence no point is covered twice",
         ),
-        Some(0) => verdict(Answer::Unknown, format!("{} boundary pieces turn outwards", placement.outer_pieces)),
-        Some(pairs) => verdict(Answer::No, format!("{pairs} pairs of boundary triangles meet")),
+        Some(0) => finding(Answer::Unknown, format!("{} boundary pieces turn outwards", placement.outer_pieces)),
+        Some(pairs) => finding(Answer::No, format!("{pairs} pairs of boundary triangles meet")),
     }
 }
 
 /// Whether the mesh is a ball, and whether it is a handle body.
-pub(super) fn decide_ball(facts: &Facts, embedded: &Verdict, proper: &ProperCells<'_, 4>) -> (Verdict, Verdict) {
+pub(super) fn decide_ball(facts: &Facts, embedded: &Finding, proper: &ProperCells<'_, 4>) -> (Finding, Finding) {
     if let Some(reason) = facts.no_handle_body() {
-        return (verdict(Answer::No, reason.clone()), verdict(Answer::No, reason));
+        return (finding(Answer::No, reason.clone()), finding(Answer::No, reason));
     }
     let Some(genus) = facts.boundary_genus else {
         let reason = "the boundary is no orientable surface";
-        return (verdict(Answer::No, reason), verdict(Answer::No, reason));
+        return (finding(Answer::No, reason), finding(Answer::No, reason));
     };
     if facts.euler_characteristic != 1 - genus {
         let reason = format!("its Euler characteristic is {}, not {}", facts.euler_characteristic, 1 - genus);
-        return (verdict(Answer::No, reason.clone()), verdict(Answer::No, reason));
+        return (finding(Answer::No, reason.clone()), finding(Answer::No, reason));
     }
     if genus == 0 {
         let ball = decide_inside_sphere(embedded, proper);
@@ -117,31 +117,31 @@ pub(super) fn decide_ball(facts: &Facts, embedded: &Verdict, proper: &ProperCell
             Answer::Yes => "it is a ball: a handle body without handles",
             _ => "a handle body with this boundary would be a ball",
         };
-        let handle_body = verdict(ball.answer, handle_body);
+        let handle_body = finding(ball.answer, handle_body);
         return (ball, handle_body);
     }
-    let ball = verdict(Answer::No, format!("its boundary has genus {genus}; that of a ball is a sphere"));
+    let ball = finding(Answer::No, format!("its boundary has genus {genus}; that of a ball is a sphere"));
     let handle_body = if collapses_to_graph(&proper.complex, &proper.gluing) {
-        verdict(Answer::Yes, format!("it collapses to a graph with {genus} independent cycles"))
+        finding(Answer::Yes, format!("it collapses to a graph with {genus} independent cycles"))
     } else {
         let reason = format!("boundary genus {genus}; whether it is a handle body is not decided here");
-        verdict(Answer::Unknown, reason)
+        finding(Answer::Unknown, reason)
     };
     (ball, handle_body)
 }
 
 /// The boundary is one sphere: is there a ball inside?
-fn decide_inside_sphere(embedded: &Verdict, proper: &ProperCells<'_, 4>) -> Verdict {
+fn decide_inside_sphere(embedded: &Finding, proper: &ProperCells<'_, 4>) -> Finding {
     if embedded.answer == Answer::Yes {
         let reason = "it is embedded in space and its boundary is one sphere (Alexander's theorem)";
-        return verdict(Answer::Yes, reason);
+        return finding(Answer::Yes, reason);
     }
     if collapses_to_graph(&proper.complex, &proper.gluing) {
-        return verdict(Answer::Yes, "it collapses to a point (Whitehead's theorem)");
+        return finding(Answer::Yes, "it collapses to a point (Whitehead's theorem)");
     }
     let reason = format!(
         "its boundary is a sphere, but a greedy collapse got stuck and its embedding is not proved: {}",
         embedded.reason
     );
-    verdict(Answer::Unknown, reason)
+    finding(Answer::Unknown, reason)
 }

@@ -65,7 +65,7 @@ mod volume;
 
 pub use intersections::{SelfIntersections, self_intersections};
 pub use report::{
-    AngleRange, Answer, BoundaryLoop, Intersections, Options, SurfaceGeometry, SurfacePart, SurfaceReport, Verdict,
+    AngleRange, Answer, BoundaryLoop, Finding, Intersections, Options, SurfaceGeometry, SurfacePart, SurfaceReport,
     VolumeBoundary, VolumeGeometry, VolumeReport,
 };
 pub use surface::analyse_triangles;

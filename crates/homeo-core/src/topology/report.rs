@@ -35,14 +35,14 @@ pub enum Answer {
 
 /// An answer and the argument for it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Verdict {
+pub struct Finding {
     /// The answer.
     pub answer: Answer,
     /// Why, in a sentence.
     pub reason: String,
 }
 
-impl Verdict {
+impl Finding {
     pub(super) fn new(answer: Answer, reason: impl Into<String>) -> Self {
         Self { answer, reason: reason.into() }
     }
@@ -142,9 +142,9 @@ pub struct SurfaceReport {
     pub closed: bool,
     /// Edges with exactly one triangle.
     pub boundary_edges: usize,
-    /// The loops of the boundary, by ascending cell; `None` where some edge has three triangles or more.
+    /// The first thousand loops of the boundary, by ascending cell; `None` where some edge has three triangles or more.
     pub boundary: Option<Vec<BoundaryLoop>>,
-    /// Number of boundary loops, likewise.
+    /// Number of all boundary loops, likewise.
     pub boundary_loops: Option<usize>,
     /// Vertices minus edges plus triangles.
     pub euler_characteristic: i64,
@@ -253,11 +253,11 @@ pub struct VolumeReport {
     /// Pairs of boundary triangles that meet where they should not; `None` where not looked for.
     pub boundary_self_intersections: Option<usize>,
     /// Whether the coordinates place the complex in space one-to-one.
-    pub embedded: Verdict,
+    pub embedded: Finding,
     /// Whether it is a ball.
-    pub ball: Verdict,
+    pub ball: Finding,
     /// Whether it is a handle body (a ball counts, with no handles).
-    pub handle_body: Verdict,
+    pub handle_body: Finding,
     /// All that is wrong.
     pub violations: Vec<Violation>,
 }

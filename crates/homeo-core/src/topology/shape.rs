@@ -89,6 +89,24 @@ impl SurfaceShape {
         pieces
     }
 
+    /// The triangles of each sheet.
+    pub(super) fn sheet_cells(&self) -> SheetCells {
+        let mut starts = vec![0u32; self.sheets.count + 1];
+        for &sheet in &self.sheets.of_cell {
+            starts[sheet as usize + 1] += 1;
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut fill = starts.clone();
+        let mut cells = vec![0; self.sheets.of_cell.len()];
+        for (cell, &sheet) in self.sheets.of_cell.iter().enumerate() {
+            cells[fill[sheet as usize] as usize] = cell as u32;
+            fill[sheet as usize] += 1;
+        }
+        SheetCells { starts, cells }
+    }
+
     fn sheet_of(&self, cell: CellId) -> usize {
         self.sheets.of_cell[cell.index()] as usize
     }
@@ -96,6 +114,24 @@ impl SurfaceShape {
     /// Whether some choice of turns is consistent across edges of two triangles.
     pub(super) fn orientable(&self) -> bool {
         self.sheets.contradictions.is_empty()
+    }
+}
+
+/// The triangles of each sheet, ascending.
+pub(super) struct SheetCells {
+    starts: Vec<u32>,
+    cells: Vec<u32>,
+}
+
+impl SheetCells {
+    /// The triangles of one sheet as vertex numbers.
+    pub(super) fn triangles<'a>(
+        &'a self,
+        sheet: usize,
+        complex: &'a TriangleComplex,
+    ) -> impl Iterator<Item = [usize; 3]> + Clone + 'a {
+        let cells = &self.cells[self.starts[sheet] as usize..self.starts[sheet + 1] as usize];
+        cells.iter().map(|&cell| complex.cells()[cell as usize].map(VertexId::index))
     }
 }
 

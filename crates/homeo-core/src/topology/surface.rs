@@ -8,10 +8,13 @@ use super::shape::SurfaceShape;
 use super::violation::{ElementKind, Severity, Violations};
 use crate::mesh::{CellId, Facet, TriangleComplex, VertexId};
 use crate::predicate::{Sign, is_degenerate_triangle};
-use crate::spatial::Aabb;
+use crate::spatial::{Aabb, Tree};
 
 /// How many pieces a report lists.
 const MOST_PARTS: usize = 100;
+
+/// How many boundary loops a report lists.
+const MOST_LOOPS: usize = 1000;
 
 /// Says what a triangle mesh is, with all violations.
 ///
@@ -41,11 +44,9 @@ pub fn analyse_triangles(positions: &[Point], complex: &TriangleComplex, options
     report_cells(&proper, complex.cell_count(), &mut violations);
     report_connectivity(&proper, &shape, &mut violations);
 
-    let parts = parts(&proper, &shape, points);
-    let geometry = points.map(|points| measure(points, complex, &proper, &parts, &mut violations));
-    if let Some(points) = points {
-        report_inside_out(points, &proper, &shape, &parts, &mut violations);
-    }
+    let volumes = points.map_or_else(Vec::new, |points| enclosed_volumes(points, &proper.complex, &shape));
+    let geometry = points.map(|points| measure(points, complex, &proper, &volumes, &mut violations));
+    report_inside_out(&proper, &shape, &volumes, &mut violations);
     let same = points.map_or_else(Vec::new, |points| coincident(points.positions));
     report_coincident(&same, &mut violations);
     let self_intersections = points
@@ -58,7 +59,7 @@ pub fn analyse_triangles(positions: &[Point], complex: &TriangleComplex, options
     let (edges, faces) = (proper.gluing.facet_count, proper.complex.cell_count());
     let euler_characteristic = shape.used_vertices as i64 - edges as i64 + faces as i64;
     let loops = proper.gluing.crowded.is_empty().then(|| describe_loops(&proper, &shape, points));
-    let loop_count = loops.as_ref().map(Vec::len);
+    let loop_count = loops.is_some().then_some(shape.loops.len());
     let genus: Option<i64> = shape.pieces.iter().map(|piece| piece.genus()).sum();
     let in_one_piece = manifold && shape.components == 1;
     SurfaceReport {
@@ -80,7 +81,7 @@ pub fn analyse_triangles(positions: &[Point], complex: &TriangleComplex, options
         genus: genus.filter(|_| manifold && faces > 0),
         is_disk: in_one_piece && loop_count == Some(1) && euler_characteristic == 1,
         is_sphere: in_one_piece && !is_open && euler_characteristic == 2,
-        parts,
+        parts: parts(&proper, &shape, &volumes),
         geometry,
         self_intersections,
         violations: violations.into_vec(),
@@ -160,10 +161,29 @@ fn edge_of(complex: &TriangleComplex, facet: Facet) -> [u32; 2] {
     ends
 }
 
-/// The pieces of a manifold; the volume of those that are closed and consistent.
-fn parts(proper: &ProperCells<'_, 3>, shape: &SurfaceShape, points: Option<Points<'_>>) -> Vec<SurfacePart> {
-    let listed = shape.pieces.iter().take(MOST_PARTS).enumerate();
-    let describe = |(sheet, piece): (usize, &super::shape::Piece)| SurfacePart {
+/// What a closed piece encloses.
+struct Enclosed {
+    sign: Sign,
+    volume: f64,
+    hull: Aabb,
+}
+
+/// For each piece of a manifold, what it encloses if it is closed and turns consistently.
+fn enclosed_volumes(points: Points<'_>, complex: &TriangleComplex, shape: &SurfaceShape) -> Vec<Option<Enclosed>> {
+    let cells = shape.sheet_cells();
+    let enclosed = |sheet: usize| {
+        let triangles = cells.triangles(sheet, complex);
+        let (sign, volume) = points.enclosed_volume(triangles.clone());
+        let hulls = triangles.map(|triangle| Aabb::of(&triangle.map(|v| points.positions[v])));
+        Enclosed { sign, volume, hull: hulls.fold(Aabb::EMPTY, |all, one| all.joined(&one)) }
+    };
+    let pieces = shape.pieces.iter().enumerate();
+    pieces.map(|(i, piece)| (piece.loops == 0 && shape.sheets.consistent[i]).then(|| enclosed(i))).collect()
+}
+
+/// The first pieces of a manifold.
+fn parts(proper: &ProperCells<'_, 3>, shape: &SurfaceShape, volumes: &[Option<Enclosed>]) -> Vec<SurfacePart> {
+    let describe = |(index, piece): (usize, &super::shape::Piece)| SurfacePart {
         cell: proper.original(piece.lowest_cell),
         vertices: piece.vertices,
         faces: piece.faces,
@@ -171,52 +191,30 @@ fn parts(proper: &ProperCells<'_, 3>, shape: &SurfaceShape, points: Option<Point
         euler_characteristic: piece.euler_characteristic(),
         orientable: piece.orientable,
         genus: piece.genus(),
-        enclosed_volume: points
-            .filter(|_| piece.loops == 0 && shape.sheets.consistent[sheet])
-            .map(|points| volume_of_sheet(points, proper, shape, sheet).1),
+        enclosed_volume: volumes.get(index).and_then(Option::as_ref).map(|enclosed| enclosed.volume),
     };
-    listed.map(describe).collect()
-}
-
-fn volume_of_sheet(points: Points<'_>, proper: &ProperCells<'_, 3>, shape: &SurfaceShape, sheet: usize) -> (Sign, f64) {
-    points.enclosed_volume(triangles_of_sheet(&proper.complex, shape, sheet))
-}
-
-/// The triangles of a sheet, as vertex numbers.
-pub(super) fn triangles_of_sheet(
-    complex: &TriangleComplex,
-    shape: &SurfaceShape,
-    sheet: usize,
-) -> impl Iterator<Item = [usize; 3]> + Clone {
-    let start = shape.pieces.get(sheet).map_or(0, |piece| piece.lowest_cell as usize);
-    complex.cells()[start..]
-        .iter()
-        .zip(&shape.sheets.of_cell[start..])
-        .filter(move |&(_, &s)| s as usize == sheet)
-        .map(|(cell, _)| cell.map(VertexId::index))
+    shape.pieces.iter().take(MOST_PARTS).enumerate().map(describe).collect()
 }
 
 /// Closed pieces whose normals point inwards, cavities apart: a negative piece is taken for the wall
 /// of a cavity where the bounding box of another closed piece surrounds its own.
 fn report_inside_out(
-    points: Points<'_>,
     proper: &ProperCells<'_, 3>,
     shape: &SurfaceShape,
-    parts: &[SurfacePart],
+    volumes: &[Option<Enclosed>],
     violations: &mut Violations,
 ) {
-    let hull = |sheet: usize| {
-        triangles_of_sheet(&proper.complex, shape, sheet)
-            .map(|triangle| Aabb::of(&triangle.map(|v| points.positions[v])))
-            .fold(Aabb::EMPTY, |all, one| all.joined(&one))
+    let hulls: Vec<Aabb> = volumes.iter().flatten().map(|enclosed| enclosed.hull).collect();
+    let tree = Tree::new(&hulls);
+    let is_cavity = |own: &Aabb| {
+        let mut is_surrounded = false;
+        tree.query_box(own, |other| is_surrounded |= hulls[other].surrounds(own));
+        is_surrounded
     };
-    let closed: Vec<usize> = (0..parts.len()).filter(|&i| parts[i].enclosed_volume.is_some()).collect();
-    let hulls: Vec<Aabb> = closed.iter().map(|&sheet| hull(sheet)).collect();
     let mut inverted = Vec::new();
-    for (&sheet, own) in closed.iter().zip(&hulls) {
-        let is_cavity = hulls.iter().any(|other| other.surrounds(own));
-        if !is_cavity && volume_of_sheet(points, proper, shape, sheet).0 == Sign::Negative {
-            inverted.push([parts[sheet].cell]);
+    for (piece, enclosed) in shape.pieces.iter().zip(volumes) {
+        if enclosed.as_ref().is_some_and(|e| e.sign == Sign::Negative && !is_cavity(&e.hull)) {
+            inverted.push([proper.original(piece.lowest_cell)]);
         }
     }
     let advice = "the closed surface of this triangle has its normals inwards (it encloses a negative volume); swap two \
@@ -229,7 +227,7 @@ fn measure(
     points: Points<'_>,
     complex: &TriangleComplex,
     proper: &ProperCells<'_, 3>,
-    parts: &[SurfacePart],
+    volumes: &[Option<Enclosed>],
     violations: &mut Violations,
 ) -> SurfaceGeometry {
     let is_flat = |cell: &[VertexId; 3]| {
@@ -255,7 +253,7 @@ fn measure(
             normal
         })
         .collect();
-    let volumes: Vec<f64> = parts.iter().filter_map(|part| part.enclosed_volume).collect();
+    let volumes: Vec<f64> = volumes.iter().flatten().map(|enclosed| enclosed.volume).collect();
     SurfaceGeometry {
         lowest: points.hull.low,
         highest: points.hull.high,
@@ -293,7 +291,7 @@ fn describe_loops(proper: &ProperCells<'_, 3>, shape: &SurfaceShape, points: Opt
         length: points.map(|points| facets.iter().map(|facet| length_of(points, facet)).sum()),
         vertex: edge_of(&proper.complex, facets[0])[0],
     };
-    shape.loops.iter().map(|boundary| describe(&boundary.facets)).collect()
+    shape.loops.iter().take(MOST_LOOPS).map(|boundary| describe(&boundary.facets)).collect()
 }
 
 fn find_intersections(

@@ -8,7 +8,7 @@ use super::links::{EdgeCounts, bad_links, split_edges};
 use super::measure::{AngleTracker, Point, Points, coincident, cross, dot, norm};
 use super::report::{Intersections, Options, VolumeBoundary, VolumeGeometry, VolumeReport};
 use super::shape::{SurfaceShape, vertices_on_crowded_facets};
-use super::surface::{report_cells, report_coincident, report_components, report_orientation, triangles_of_sheet};
+use super::surface::{report_cells, report_coincident, report_components, report_orientation};
 use super::violation::{ElementKind, Severity, Violations};
 use crate::mesh::{Facet, TetrahedronComplex, TriangleComplex, VertexId};
 use crate::predicate::{Sign, orient3d};
@@ -229,16 +229,14 @@ impl<'a> Anatomy<'a> {
         let first = if cells > 0 { turned_sign(0) } else { Sign::Zero };
         let uniform = first != Sign::Zero && (0..cells).all(|cell| turned_sign(cell) == first);
         let shape = &self.skin.shape;
+        let cells = shape.sheet_cells();
         let is_outer = |&piece: &usize| {
-            let triangles = triangles_of_sheet(&self.skin.complex, shape, piece);
+            let triangles = cells.triangles(piece, &self.skin.complex);
             let originals = triangles.map(|triangle| triangle.map(|v| self.skin.originals[v] as usize));
             points.enclosed_volume(originals).0 == first
         };
-        // Only asked for where it decides something; each piece costs a pass over the boundary.
-        let outer_pieces = match shape.pieces.len() {
-            _ if !uniform => 0,
-            count => (0..count.min(MOST_PIECES)).filter(is_outer).count(),
-        };
+        // Only asked for where it decides something.
+        let outer_pieces = if uniform { (0..shape.pieces.len()).filter(is_outer).count() } else { 0 };
         let flat_cells = signs.iter().filter(|&&sign| sign == Sign::Zero).count();
         Placement { uniform, flat_cells, boundary_intersections: None, boundary_vertices_merged: 0, outer_pieces }
     }

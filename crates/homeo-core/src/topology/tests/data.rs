@@ -99,7 +99,7 @@ fn surfaces_agree_with_the_manifest() {
     assert!(count >= 72);
 }
 
-const VOLUME: [(&str, &str); 22] = [
+const VOLUME: [(&str, &str); 21] = [
     ("tets", "/cells"),
     ("components", "/components"),
     ("boundary_genus", "/boundary/genus"),
@@ -119,7 +119,6 @@ const VOLUME: [(&str, &str); 22] = [
     ("flat", "/geometry/flat_cells"),
     ("tets_with_4_boundary_vertices", "/cells_with_all_vertices_on_boundary"),
     ("interior_edges_between_boundary_vertices", "/interior_edges_between_boundary_vertices"),
-    ("vertices", "/vertices"),
     ("vertices", "/vertices"),
     ("ball_answer", "/ball/answer"),
 ];

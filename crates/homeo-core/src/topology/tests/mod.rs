@@ -3,6 +3,7 @@
 mod data;
 mod invalid_files;
 mod plain_readers;
+mod random;
 mod shapes;
 mod surfaces;
 mod volumes;
