@@ -34,7 +34,11 @@ mod vtk;
 mod vtk_cells;
 mod vtk_data;
 mod vtk_write;
+mod vtu;
+mod vtu_blocks;
+mod vtu_write;
 mod write;
+mod xml;
 
 pub use error::{Place, ReadError, WriteError};
 pub use mesh_file::{Attribute, Element, MeshFile, PhysicalName, PolygonList, Values};
