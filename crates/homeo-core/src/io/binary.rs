@@ -218,15 +218,10 @@ impl<'a> Cursor<'a> {
                 self.at += N;
                 Ok(*chunk)
             }
-            None => Err(self.fault(
-                "unexpected-end",
-                format!("the file ends where {what} should be; it may be cut short"),
-            )),
+            None => {
+                Err(self.fault("unexpected-end", format!("the file ends where {what} should be; it may be cut short")))
+            }
         }
-    }
-
-    pub fn u8(&mut self, what: &str) -> Outcome<u8> {
-        Ok(self.chunk::<1>(what)?[0])
     }
 
     pub fn u32(&mut self, what: &str) -> Outcome<u32> {

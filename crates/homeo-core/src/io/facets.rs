@@ -78,7 +78,10 @@ impl Reader {
                 };
                 let index = json.unsigned()?;
                 *corner = u32::try_from(index).ok().filter(|&index| index < u32::MAX - 1).ok_or_else(|| {
-                    json.fault("index-out-of-range", format!("a facet names vertex {index}, which does not fit 32 bits"))
+                    json.fault(
+                        "index-out-of-range",
+                        format!("a facet names vertex {index}, which does not fit 32 bits"),
+                    )
                 })?;
                 if self.highest.is_none_or(|(highest, _)| *corner > highest) {
                     self.highest = Some((*corner, json.last()));

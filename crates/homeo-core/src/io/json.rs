@@ -50,7 +50,9 @@ impl<'a> Json<'a> {
     #[cold]
     fn unexpected(&mut self, wanted: &str) -> Fault {
         match self.peek() {
-            None => self.fault("unexpected-end", format!("the file ends where {wanted} should be; it may be cut short")),
+            None => {
+                self.fault("unexpected-end", format!("the file ends where {wanted} should be; it may be cut short"))
+            }
             Some(_) => {
                 let rest = &self.bytes[self.at..self.bytes.len().min(self.at + 12)];
                 self.fault("bad-syntax", format!("expected {wanted}, found \"{}\"", show(rest)))
@@ -91,7 +93,10 @@ impl<'a> Json<'a> {
 
     pub fn begin_object(&mut self) -> Outcome<Items> {
         if self.peek() != Some(b'{') {
-            return Err(self.fault("bad-header", "a facet list is a JSON object such as {\"vertices\": 4, \"facets\": [[0, 1, 2, 3]]}"));
+            return Err(self.fault(
+                "bad-header",
+                "a facet list is a JSON object such as {\"vertices\": 4, \"facets\": [[0, 1, 2, 3]]}",
+            ));
         }
         self.expect(b'{')?;
         Ok(Items { is_first: true })

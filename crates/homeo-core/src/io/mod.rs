@@ -10,10 +10,10 @@
 mod binary;
 mod build;
 mod error;
-mod medit;
-mod medit_write;
 mod facets;
 mod json;
+mod medit;
+mod medit_write;
 mod mesh_file;
 mod msh;
 mod msh_data;
@@ -44,4 +44,7 @@ pub use error::{Place, ReadError, WriteError};
 pub use mesh_file::{Attribute, Element, MeshFile, PhysicalName, PolygonList, Values};
 pub use read::{Format, read_mesh, read_mesh_bytes};
 pub use triangulate::Triangulated;
+#[cfg(test)]
+mod tests;
+
 pub use write::{Encoding, WriteOptions, WriteReport, write_mesh, write_mesh_to};

@@ -17,7 +17,8 @@ use super::scan::{Scanner, parse_f64, show};
 
 pub(super) fn read(bytes: &[u8]) -> Outcome<MeshFile> {
     let mut numbers = Numbers::new(bytes);
-    let mut reader = Reader { version: read_header(&mut numbers)?, ..Reader::default() };
+    let version = read_header(&mut numbers)?;
+    let mut reader = Reader { version, data_budget: bytes.len(), ..Reader::default() };
     while let Some(section) = numbers.scanner.token() {
         let Some(name) = section.strip_prefix(b"$") else {
             let message = format!("expected a section such as $Nodes, found \"{}\"", show(section));
@@ -46,8 +47,10 @@ fn read_header(numbers: &mut Numbers<'_>) -> Outcome<Version> {
         Some(version) if (2.0..3.0).contains(&version) => Version::Two,
         Some(4.1) => Version::Four,
         _ => {
-            let message =
-                format!("MSH version {} is not read; save the mesh as version 2.2 or 4.1 (gmsh -save -format msh41)", show(token));
+            let message = format!(
+                "MSH version {} is not read; save the mesh as version 2.2 or 4.1 (gmsh -save -format msh41)",
+                show(token)
+            );
             return Err(scanner.fault("unsupported-variant", message));
         }
     };
@@ -81,6 +84,8 @@ pub(super) struct Reader {
     /// Element numbers in the file, for `$ElementData`.
     pub polygon_numbers: Vec<u64>,
     pub tetrahedron_numbers: Vec<u64>,
+    /// How many entries the attributes from data sections may still have.
+    pub data_budget: usize,
     points: usize,
     lines: usize,
     several_physical: usize,
@@ -318,7 +323,9 @@ impl Reader {
             2 | 3 => {
                 self.mesh.polygons.corners.extend_from_slice(&corners[..count]);
                 if self.mesh.polygons.corners.len() >= u32::MAX as usize {
-                    return Err(numbers.scanner.fault("too-large", "the polygons have more corners than 32 bits can number"));
+                    return Err(numbers
+                        .scanner
+                        .fault("too-large", "the polygons have more corners than 32 bits can number"));
                 }
                 close_polygon(&mut self.mesh.polygons);
                 self.polygon_tags.push(tags[0]);

@@ -58,7 +58,8 @@ impl<'a> Numbers<'a> {
         self.read(
             |scanner| {
                 let value = scanner.integer(what)?;
-                i32::try_from(value).map_err(|_| scanner.fault("too-large", format!("{what}: {value} does not fit 32 bits")))
+                i32::try_from(value)
+                    .map_err(|_| scanner.fault("too-large", format!("{what}: {value} does not fit 32 bits")))
             },
             |cursor| cursor.i32(what),
         )
@@ -150,7 +151,9 @@ impl NodeNumbers {
         self.sorted = self.numbers.iter().zip(0..).map(|(&number, index)| (number, index)).collect();
         self.sorted.sort_unstable();
         match self.sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            Some(pair) => Err(scanner.fault("bad-syntax", format!("there are two nodes with the number {}", pair[0].0))),
+            Some(pair) => {
+                Err(scanner.fault("bad-syntax", format!("there are two nodes with the number {}", pair[0].0)))
+            }
             None => Ok(()),
         }
     }

@@ -78,7 +78,8 @@ impl<'a> Body<'a> {
     }
 
     fn read_element(&mut self, element: &ElementHeader) -> Outcome<Vec<Column>> {
-        let mut columns: Vec<Column> = element.properties.iter().map(|property| Column::new(property, self.encoding)).collect();
+        let mut columns: Vec<Column> =
+            element.properties.iter().map(|property| Column::new(property, self.encoding)).collect();
         // Rows of nothing take no bytes, so their number is not to be trusted.
         if columns.is_empty() {
             return Ok(columns);
@@ -288,7 +289,11 @@ fn take_faces(mesh: &mut MeshFile, mut columns: Vec<Column>) -> Result<(), BadRo
         }
         if let Some(&bad) = corners.iter().find(|&&index| index as usize >= limit) {
             let shown = if bad == u32::MAX { "(not 32 bits)".to_string() } else { bad.to_string() };
-            return Err(BadRow { row, code: "index-out-of-range", message: out_of_range("face", row, &shown, limit, 0) });
+            return Err(BadRow {
+                row,
+                code: "index-out-of-range",
+                message: out_of_range("face", row, &shown, limit, 0),
+            });
         }
     }
     mesh.polygons = PolygonList { starts: if starts.len() > 1 { starts } else { Vec::new() }, corners: column.indices };
@@ -298,7 +303,9 @@ fn take_faces(mesh: &mut MeshFile, mut columns: Vec<Column>) -> Result<(), BadRo
                 let name = if list.name == "texcoord" { "texture".to_string() } else { list.name };
                 mesh.attributes.push(Attribute { name, element: Element::Corner, components, values: list.values });
             }
-            None => mesh.losses.push(format!("the list \"{}\" of faces was left out: it does not fit the corners", list.name)),
+            None => mesh
+                .losses
+                .push(format!("the list \"{}\" of faces was left out: it does not fit the corners", list.name)),
         }
     }
     mesh.attributes.extend(group_columns(columns, Element::Polygon));
@@ -356,7 +363,11 @@ fn group_columns(columns: Vec<Column>, element: Element) -> Vec<Attribute> {
 fn numbered_run(columns: &[Column]) -> Option<(String, usize)> {
     let base = columns.first()?.name.strip_suffix("_0")?;
     let belongs = |(index, column): &(usize, &Column)| {
-        column.name.strip_prefix(base).and_then(|rest| rest.strip_prefix('_')).is_some_and(|rest| rest == index.to_string())
+        column
+            .name
+            .strip_prefix(base)
+            .and_then(|rest| rest.strip_prefix('_'))
+            .is_some_and(|rest| rest == index.to_string())
     };
     let count = columns.iter().enumerate().take_while(belongs).count();
     (count > 1 && !base.is_empty()).then(|| (base.to_string(), count))
@@ -374,9 +385,15 @@ fn interleave(columns: &[Column]) -> Option<Values> {
         Some(rows)
     }
     match &columns.first()?.values {
-        Values::F64(_) => rows(columns, |c| if let Values::F64(v) = &c.values { Some(v) } else { None }).map(Values::F64),
-        Values::F32(_) => rows(columns, |c| if let Values::F32(v) = &c.values { Some(v) } else { None }).map(Values::F32),
-        Values::I64(_) => rows(columns, |c| if let Values::I64(v) = &c.values { Some(v) } else { None }).map(Values::I64),
+        Values::F64(_) => {
+            rows(columns, |c| if let Values::F64(v) = &c.values { Some(v) } else { None }).map(Values::F64)
+        }
+        Values::F32(_) => {
+            rows(columns, |c| if let Values::F32(v) = &c.values { Some(v) } else { None }).map(Values::F32)
+        }
+        Values::I64(_) => {
+            rows(columns, |c| if let Values::I64(v) = &c.values { Some(v) } else { None }).map(Values::I64)
+        }
         Values::Text(_) => None,
     }
 }

@@ -30,17 +30,8 @@ pub enum Format {
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 9] = [
-        Self::Obj,
-        Self::Ply,
-        Self::Stl,
-        Self::Off,
-        Self::Msh,
-        Self::Medit,
-        Self::Vtk,
-        Self::Vtu,
-        Self::Json,
-    ];
+    pub const ALL: [Self; 9] =
+        [Self::Obj, Self::Ply, Self::Stl, Self::Off, Self::Msh, Self::Medit, Self::Vtk, Self::Vtu, Self::Json];
 
     /// The extension of its files, without the dot.
     pub fn extension(self) -> &'static str {

@@ -213,7 +213,7 @@ impl<'a> Scanner<'a> {
     #[cold]
     pub fn end_fault(&self, what: &str) -> Fault {
         let message = format!("the file ends where {what} should be; it may be cut short");
-        Fault::at_line_of(self.bytes, self.bytes.len(), "unexpected-end", message)
+        Fault::at_line_of(self.bytes, self.bytes.trim_ascii_end().len(), "unexpected-end", message)
     }
 }
 
@@ -224,7 +224,9 @@ pub(super) fn too_large(count: u64, what: &str) -> String {
 
 /// The sentence for a count that the file cannot hold.
 pub(super) fn announced(count: u64, what: &str, remaining: usize) -> String {
-    format!("the file announces {count} {what}, more than its remaining {remaining} bytes can hold; it may be cut short")
+    format!(
+        "the file announces {count} {what}, more than its remaining {remaining} bytes can hold; it may be cut short"
+    )
 }
 
 /// The sentence for an index that names no vertex; `first` is the number of the first vertex.
@@ -266,7 +268,9 @@ pub(super) fn parse_u64(token: &[u8]) -> Option<u64> {
 /// A whole number that fits 64 bits.
 pub(super) fn parse_i64(token: &[u8]) -> Option<i64> {
     match token.strip_prefix(b"-") {
-        Some(digits) if digits.first().is_some_and(u8::is_ascii_digit) => 0_i64.checked_sub_unsigned(parse_u64(digits)?),
+        Some(digits) if digits.first().is_some_and(u8::is_ascii_digit) => {
+            0_i64.checked_sub_unsigned(parse_u64(digits)?)
+        }
         Some(_) => None,
         None => i64::try_from(parse_u64(token)?).ok(),
     }

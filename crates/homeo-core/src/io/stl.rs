@@ -219,11 +219,7 @@ fn write_text(out: &mut dyn Write, parcel: &mut Parcel<'_>, triangles: &[([u32; 
     Ok(())
 }
 
-fn write_binary(
-    out: &mut dyn Write,
-    parcel: &mut Parcel<'_>,
-    triangles: &[([u32; 3], u32)],
-) -> Result<(), WriteError> {
+fn write_binary(out: &mut dyn Write, parcel: &mut Parcel<'_>, triangles: &[([u32; 3], u32)]) -> Result<(), WriteError> {
     let attribute = parcel.take("attribute", Element::Polygon, |attribute| match &attribute.values {
         Values::I64(values) => attribute.components == 1 && values.iter().all(|&value| u16::try_from(value).is_ok()),
         _ => false,
@@ -238,7 +234,9 @@ fn write_binary(
         for x in unit_normal(points).into_iter().chain(points.into_iter().flatten()) {
             let single = x as f32;
             if !single.is_finite() {
-                return Err(WriteError::of_mesh(format!("the coordinate {x:?} is too large for binary STL; write text")));
+                return Err(WriteError::of_mesh(format!(
+                    "the coordinate {x:?} is too large for binary STL; write text"
+                )));
             }
             out.write_all(&single.to_le_bytes())?;
         }

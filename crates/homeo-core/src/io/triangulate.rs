@@ -100,7 +100,9 @@ fn fan_corners(polygons: &PolygonList) -> Vec<([u32; 3], u32)> {
         let apex = (0..count).min_by_key(|&corner| vertices[corner as usize]).unwrap_or(0);
         // Widened: the sum of two corner numbers may exceed 32 bits.
         let corner = |step: u32| start + ((u64::from(apex) + u64::from(step)) % u64::from(count)) as u32;
-        triangles.extend((1..count.saturating_sub(1)).map(|step| ([apex + start, corner(step), corner(step + 1)], index as u32)));
+        triangles.extend(
+            (1..count.saturating_sub(1)).map(|step| ([apex + start, corner(step), corner(step + 1)], index as u32)),
+        );
     }
     triangles
 }

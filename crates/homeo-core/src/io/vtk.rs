@@ -92,7 +92,8 @@ impl<'a> Reader<'a> {
                 let kind = self.scanner.expect("the kind of data set")?;
                 self.is_poly_data = kind.eq_ignore_ascii_case(b"POLYDATA");
                 if !self.is_poly_data && !kind.eq_ignore_ascii_case(b"UNSTRUCTURED_GRID") {
-                    let message = format!("the data set {} is not read; known are UNSTRUCTURED_GRID and POLYDATA", show(kind));
+                    let message =
+                        format!("the data set {} is not read; known are UNSTRUCTURED_GRID and POLYDATA", show(kind));
                     return Err(self.scanner.fault("unsupported-variant", message));
                 }
                 Ok(())
@@ -296,7 +297,8 @@ impl<'a> Reader<'a> {
         self.cells.push(kind, corners, vertices, &mut self.mesh).map_err(|bad| {
             let BadCell { code, message, corner } = bad;
             // The element is named; its line is that of the section's end, which helps nobody.
-            let message = if code == "index-out-of-range" { format!("{message} (its corner {corner})") } else { message };
+            let message =
+                if code == "index-out-of-range" { format!("{message} (its corner {corner})") } else { message };
             Fault::of_file(code, message)
         })
     }

@@ -49,7 +49,9 @@ impl Cells {
         }
         let needs = |count: usize| match corners.len() {
             found if found == count => Ok(()),
-            found => Err(bad("bad-syntax", format!("cell {cell} of type {kind} has {found} corners instead of {count}"))),
+            found => {
+                Err(bad("bad-syntax", format!("cell {cell} of type {kind} has {found} corners instead of {count}")))
+            }
         };
         if mesh.polygons.corners.len() + 3 * corners.len() >= u32::MAX as usize || cell >= u32::MAX as usize {
             return Err(bad("too-large", "there are more cells than 32 bits can number".to_string()));

@@ -112,7 +112,8 @@ pub(super) fn take_cell_data(parcel: &mut Parcel<'_>) -> Vec<DataArray> {
                 && other.components == first.components
                 && std::mem::discriminant(&other.values) == std::mem::discriminant(&first.values)
         });
-        let (polygons, tetrahedra) = if first.element == Element::Polygon { (Some(first), second) } else { (second, Some(first)) };
+        let (polygons, tetrahedra) =
+            if first.element == Element::Polygon { (Some(first), second) } else { (second, Some(first)) };
         let missing = match (polygons, tetrahedra) {
             (None, _) => Some(Element::Polygon),
             (_, None) => Some(Element::Tetrahedron),
@@ -121,7 +122,8 @@ pub(super) fn take_cell_data(parcel: &mut Parcel<'_>) -> Vec<DataArray> {
         if let Some(element) = missing.filter(|&element| parcel.mesh.count(element) > 0) {
             let filler = if matches!(first.values, Values::I64(_)) { "0" } else { "NaN" };
             let (name, on) = (&first.name, element.plural());
-            parcel.lose(format!("cell data covers all cells: the attribute \"{name}\" was filled with {filler} on {on}"));
+            parcel
+                .lose(format!("cell data covers all cells: the attribute \"{name}\" was filled with {filler} on {on}"));
         }
         let rows = |element| parcel.mesh.count(element) * first.components;
         let values = join(

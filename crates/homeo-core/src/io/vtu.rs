@@ -162,7 +162,8 @@ impl Outline {
         let name = tag.attribute(b"Name").unwrap_or_default();
         let components = tag.attribute(b"NumberOfComponents").map_or(Some(1), |text| text.trim().parse::<u64>().ok());
         let Some(components) = components.filter(|count| (1..=1 << 16).contains(count)) else {
-            let message = format!("the array \"{}\" has a number of components that is not read", show(name.as_bytes()));
+            let message =
+                format!("the array \"{}\" has a number of components that is not read", show(name.as_bytes()));
             return Err(xml.fault("bad-syntax", message));
         };
         let end = tag.behind + if tag.kind == TagKind::Open { xml.text().len() } else { 0 };
@@ -330,19 +331,16 @@ impl<'a> Decoder<'a> {
         let ends = self.indices(array)?;
         let kinds = self.indices(outline.find(Parent::Cells, Some("types"))?)?;
         if ends.len() as u64 != outline.cell_count || kinds.len() != ends.len() {
-            let message = format!(
-                "there are {} offsets and {} types for {} cells",
-                ends.len(),
-                kinds.len(),
-                outline.cell_count
-            );
+            let message =
+                format!("there are {} offsets and {} types for {} cells", ends.len(), kinds.len(), outline.cell_count);
             return Err(self.fault(array, "bad-syntax", message));
         }
         let mut cells = Cells::default();
         let mut start = 0;
         for (cell, (&end, &kind)) in ends.iter().zip(&kinds).enumerate() {
             let Some(list) = corners.get(start..end as usize) else {
-                let message = format!("the offset of cell {cell} is {end}: offsets must rise to at most {}", corners.len());
+                let message =
+                    format!("the offset of cell {cell} is {end}: offsets must rise to at most {}", corners.len());
                 return Err(self.fault(array, "bad-syntax", message));
             };
             cells

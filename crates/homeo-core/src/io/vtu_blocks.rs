@@ -60,7 +60,10 @@ impl<'a> Source<'a> {
             Self::Base64(base64) => base64.take(count).map(Cow::Owned),
         };
         taken.ok_or_else(|| {
-            self.fault("unexpected-end", format!("a block announces {count} bytes, more than follow; the file may be cut short"))
+            self.fault(
+                "unexpected-end",
+                format!("a block announces {count} bytes, more than follow; the file may be cut short"),
+            )
         })
     }
 
@@ -101,7 +104,9 @@ impl<'a> Source<'a> {
                     plain.extend_from_slice(&part);
                 }
                 Err(error) if error.status == miniz_oxide::inflate::TINFLStatus::HasMoreOutput => {
-                    return Err(self.fault("too-large", "the file holds more than 64 times its size; it is not decompressed"));
+                    return Err(
+                        self.fault("too-large", "the file holds more than 64 times its size; it is not decompressed")
+                    );
                 }
                 Err(_) => return Err(self.fault("bad-syntax", "a compressed block is damaged")),
             }

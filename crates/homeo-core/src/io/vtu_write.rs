@@ -95,7 +95,13 @@ fn block_of(values: &Values, is_bytes: bool) -> Vec<u8> {
     let size = match values {
         Values::F64(_) => 8,
         Values::F32(_) => 4,
-        Values::I64(_) | Values::Text(_) => if is_bytes { 1 } else { 8 },
+        Values::I64(_) | Values::Text(_) => {
+            if is_bytes {
+                1
+            } else {
+                8
+            }
+        }
     };
     let length = values.len() * size;
     let mut block = Vec::with_capacity(length + 8);

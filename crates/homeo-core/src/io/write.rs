@@ -155,12 +155,7 @@ impl<'a> Parcel<'a> {
     }
 
     /// Takes the attribute of that name and kind, if it fits.
-    pub fn take(
-        &mut self,
-        name: &str,
-        element: Element,
-        fits: impl Fn(&Attribute) -> bool,
-    ) -> Option<&'a Attribute> {
+    pub fn take(&mut self, name: &str, element: Element, fits: impl Fn(&Attribute) -> bool) -> Option<&'a Attribute> {
         self.take_where(|attribute| attribute.name == name && attribute.element == element && fits(attribute))
     }
 
@@ -189,7 +184,10 @@ impl<'a> Parcel<'a> {
             )));
         }
         if count > 0 {
-            self.lose(format!("{} cannot hold the {count} tetrahedra; only the polygons were written", self.format.name()));
+            self.lose(format!(
+                "{} cannot hold the {count} tetrahedra; only the polygons were written",
+                self.format.name()
+            ));
         }
         Ok(())
     }
@@ -204,9 +202,7 @@ impl<'a> Parcel<'a> {
     /// For formats without a binary variant.
     pub fn text_only(&self, options: &WriteOptions) -> Result<(), WriteError> {
         match options.encoding {
-            Encoding::Binary => {
-                Err(WriteError::of_mesh(format!("homeo writes {} as text only", self.format.name())))
-            }
+            Encoding::Binary => Err(WriteError::of_mesh(format!("homeo writes {} as text only", self.format.name()))),
             Encoding::Auto | Encoding::Text => Ok(()),
         }
     }
@@ -215,7 +211,8 @@ impl<'a> Parcel<'a> {
         let name = self.format.name();
         for (attribute, _) in self.mesh.attributes.iter().zip(&self.taken).filter(|(_, taken)| !**taken) {
             let on = attribute.element.plural();
-            self.losses.push(format!("{name} cannot hold the attribute \"{}\" on {on}; it was left out", attribute.name));
+            self.losses
+                .push(format!("{name} cannot hold the attribute \"{}\" on {on}; it was left out", attribute.name));
         }
         if !self.names_taken && !self.mesh.names.is_empty() {
             let count = self.mesh.names.len();
