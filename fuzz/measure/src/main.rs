@@ -69,8 +69,17 @@ fn measure(format: Format, seeds: &[Vec<u8>], duration: Duration) {
             if ratio > worst.0 {
                 worst = (ratio, allocated, input.len());
             }
-            if nanoseconds / input.len() as f64 > slowest.0 {
-                slowest = (nanoseconds / input.len() as f64, input.len());
+            // Other programs interrupt: a read is slow only if it is slow every time.
+            let mut rate = nanoseconds / input.len() as f64;
+            for _ in 0..20 {
+                if rate > slowest.0 {
+                    let begin = Instant::now();
+                    let _ = std::panic::catch_unwind(|| read_mesh_bytes(format, "damaged".as_ref(), &input).is_ok());
+                    rate = rate.min(begin.elapsed().as_nanos() as f64 / input.len() as f64);
+                }
+            }
+            if rate > slowest.0 {
+                slowest = (rate, input.len());
             }
         }
         reads += 1;
