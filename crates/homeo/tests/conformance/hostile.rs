@@ -1,0 +1,1 @@
+//! Damaged map files: an error or a map, never a panic.

@@ -1,0 +1,1 @@
+//! Refinement: what is starred tiles what was there, exactly.
