@@ -1,0 +1,47 @@
+// Names of the axes, as text above the canvas so that it stays sharp and follows the theme.
+
+import { Vector3 } from 'three';
+import { toDisplay } from './space.js';
+
+/** Where the labels of a side stand, in shares of its frame. */
+function anchors(model, side) {
+  const { image_frame: frame, target } = model.data;
+  if (side === 0) return [['x', [1.06, 0, 0]], ['y', [0, 1.06, 0]], ['z', [0, 0, 1.06]]];
+  const share = (t) => t.map((value, axis) => (frame.high[axis] > frame.low[axis] ? (value - frame.low[axis]) / (frame.high[axis] - frame.low[axis]) : 0));
+  const places = {
+    square: [['0', [-0.04, -0.04, 0]], ['x = 1', [1.02, -0.05, 0]], ['y = 1', [-0.05, 1.04, 0]]],
+    disk: [['x = 1', [1.1, 0, 0]], ['y = 1', [0, 1.06, 0]]],
+    cube: [['0', [-0.05, -0.05, -0.05]], ['x = 1', [1.08, -0.04, -0.04]], ['y = 1', [-0.04, 1.08, -0.04]], ['z = 1', [-0.04, -0.04, 1.08]]],
+    ball: [['x = 1', [1.13, 0, 0]], ['y = 1', [0, 1.13, 0]], ['z = 1', [0, 0, 1.08]]],
+  };
+  return places[target].map(([text, place]) => [text, share(place)]);
+}
+
+export class Labels {
+  constructor(views, model) {
+    this.views = views;
+    this.model = model;
+    this.entries = views.panes.flatMap((pane) =>
+      anchors(model, pane.side).map(([text, shares]) => {
+        const element = document.createElement('span');
+        element.className = 'axis-label';
+        element.textContent = text;
+        pane.element.append(element);
+        return { pane, element, shares };
+      }),
+    );
+    views.afterDraw.push(() => this.place());
+  }
+
+  place() {
+    const { spaces } = this.model;
+    for (const { pane, element, shares } of this.entries) {
+      const isMorphed = pane.side === 0 && this.views.settings.morph >= 0.5;
+      const space = pane.side === 0 ? spaces.source : spaces.target;
+      const p = new Vector3(...toDisplay(space, shares)).project(pane.camera);
+      const [x, y] = [((p.x + 1) / 2) * pane.element.clientWidth, ((1 - p.y) / 2) * pane.element.clientHeight];
+      element.hidden = isMorphed || Math.abs(p.x) > 1 || Math.abs(p.y) > 1;
+      element.style.transform = `translate(-50%, -50%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    }
+  }
+}
