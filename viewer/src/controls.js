@@ -127,7 +127,7 @@ export class Controls {
     }));
     return group(
       'View',
-      this.field('morph', (change) => slider('morph', 'Morph the left side', { min: 0, max: 1, step: 0.01, words: percent }, change)),
+      this.field('morph', (change) => slider('morph', 'Morph left side', { min: 0, max: 1, step: 0.01, words: percent }, change)),
       this.views.canLink ? this.field('linked', (change) => check('linked', 'Turn both sides together', change)) : null,
       up,
       element('div', { class: 'row buttons' }, home, save),

@@ -46,6 +46,6 @@ export function slider(name, label, { min, max, step, words }, onChange) {
     onChange(Number(input.value));
     update();
   });
-  const row = element('div', { class: 'row slider' }, element('label', { for: id }, label), output, input);
+  const row = element('div', { class: 'row slider' }, element('label', { for: id }, label), input, output);
   return { row, input, show: (value) => { input.value = String(value); update(); } };
 }

@@ -38,7 +38,11 @@ export class Labels {
     for (const { pane, element, shares } of this.entries) {
       const isMorphed = pane.side === 0 && this.views.settings.morph >= 0.5;
       const space = pane.side === 0 ? spaces.source : spaces.target;
-      const p = new Vector3(...toDisplay(space, shares)).project(pane.camera);
+      const anchor = new Vector3(...toDisplay(space, shares));
+      const { position } = pane.camera;
+      // Behind the middle of the object the canvas may cover the label; in front it must not.
+      element.classList.toggle('in-front', pane.isFlat || anchor.distanceTo(position) <= position.length());
+      const p = anchor.project(pane.camera);
       const [x, y] = [((p.x + 1) / 2) * pane.element.clientWidth, ((1 - p.y) / 2) * pane.element.clientHeight];
       element.hidden = isMorphed || Math.abs(p.x) > 1 || Math.abs(p.y) > 1;
       element.style.transform = `translate(-50%, -50%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;

@@ -154,7 +154,8 @@ export class Views {
     const { clientWidth: width, clientHeight: height } = this.container;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.renderer.setSize(width, height, false);
-    this.request();
+    // At once: resizing has emptied the canvas.
+    this.draw();
   }
 
   request() {
@@ -165,7 +166,7 @@ export class Views {
 
   draw() {
     this.isWaiting = false;
-    if (!this.settings) return;
+    if (!this.settings || !this.panes[0].controls) return;
     const { renderer, model } = this;
     renderer.setScissorTest(false);
     renderer.clear();
