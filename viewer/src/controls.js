@@ -60,7 +60,7 @@ export class Controls {
   }
 
   surfaceGroup() {
-    const colourings = [['checks', 'checkerboard of the target'], ['position', 'place in the target'], ['plain', 'one colour']];
+    const colourings = [['checks', 'checkerboard'], ['position', 'place in the target'], ['plain', 'one colour']];
     if (this.model.data.distortion) colourings.splice(2, 0, ['distortion', 'distortion']);
     const percent = (value) => `${Math.round(value * 100)} %`;
     this.scale = element('div', { class: 'colour-scale' }, element('span', {}, '1'), element('i', {}), element('span', {}, `${this.model.data.distortion_end}`));
@@ -68,7 +68,7 @@ export class Controls {
       'Surface',
       this.field('colouring', (change) => choice('colouring', 'Colour', colourings, change)),
       this.scale,
-      this.field('checks', (change) => slider('checks', 'Squares per side', { min: 2, max: 32, step: 2, words: String }, change)),
+      this.field('checks', (change) => slider('checks', 'Squares', { min: 2, max: 32, step: 2, words: String }, change)),
       this.field('opacity', (change) => slider('opacity', 'Opacity', { min: 0, max: 1, step: 0.02, words: percent }, change)),
       this.field('edges', (change) => check('edges', 'Mesh edges', change)),
     );
@@ -82,7 +82,7 @@ export class Controls {
       this.model.isFlat ? `Lines of the ${target}` : 'Level sets',
       this.field('coordinate', (change) => choice('coordinate', 'Coordinate', options, change)),
       this.field('allLevels', (change) => check('allLevels', 'All values', change)),
-      this.field('level', (change) => slider('level', 'Value', { min: 1, max: 7, step: 1, words }, change)),
+      this.field('level', (change) => slider('level', 'Value', { min: 1, max: 7, step: 1, words, isWide: true }, change)),
     );
   }
 
@@ -118,7 +118,7 @@ export class Controls {
   }
 
   viewGroup() {
-    const percent = (value) => (value === 0 ? 'source' : value === 1 ? 'target' : `${Math.round(value * 100)} %`);
+    const percent = (value) => `${Math.round(value * 100)} %`;
     const home = element('button', { type: 'button', onclick: () => this.views.home() }, 'Reset view');
     const save = element('button', { type: 'button', onclick: () => this.save() }, 'Save picture');
     const up = this.field('up', (change) => choice('up', 'Up axis', [['z', 'z'], ['y', 'y'], ['x', 'x']], (value) => {
@@ -127,7 +127,7 @@ export class Controls {
     }));
     return group(
       'View',
-      this.field('morph', (change) => slider('morph', 'Morph left side', { min: 0, max: 1, step: 0.01, words: percent }, change)),
+      this.field('morph', (change) => slider('morph', 'Morph to target', { min: 0, max: 1, step: 0.01, words: percent }, change)),
       this.views.canLink ? this.field('linked', (change) => check('linked', 'Turn both sides together', change)) : null,
       up,
       element('div', { class: 'row buttons' }, home, save),

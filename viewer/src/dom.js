@@ -34,7 +34,7 @@ export function choice(name, label, options, onChange) {
 }
 
 /** A slider with its value in words beside the label. */
-export function slider(name, label, { min, max, step, words }, onChange) {
+export function slider(name, label, { min, max, step, words, isWide = false }, onChange) {
   const id = `control-${counter++}`;
   const input = element('input', { type: 'range', id, name, min, max, step });
   const output = element('output', { for: id });
@@ -46,6 +46,6 @@ export function slider(name, label, { min, max, step, words }, onChange) {
     onChange(Number(input.value));
     update();
   });
-  const row = element('div', { class: 'row slider' }, element('label', { for: id }, label), input, output);
+  const row = element('div', { class: isWide ? 'row wide' : 'row slider' }, element('label', { for: id }, label), ...(isWide ? [output, input] : [input, output]));
   return { row, input, show: (value) => { input.value = String(value); update(); } };
 }

@@ -55,9 +55,8 @@ export class Model {
   }
 
   sharedUniforms() {
-    const { source_frame: frame, image_frame: image, target } = this.data;
+    const { image_frame: image, target } = this.data;
     const vector = (values) => ({ value: new Vector3(...values) });
-    void frame;
     return {
       side: { value: 0 },
       sourceScale: vector(this.spaces.source.scale), sourceOffset: vector(this.spaces.source.offset),
@@ -135,7 +134,7 @@ export class Model {
     this.leaves.visible = false;
   }
 
-  /** Outline of the target and box of the source; each is seen on its own side only. */
+  /** Outline of the target and axes of the source's box; each is seen on its own side only. */
   buildFrames() {
     this.frames = [new Group(), new Group()];
     this.frames.forEach((group) => this.root.add(group));
@@ -155,10 +154,11 @@ export class Model {
     }));
     const circles = this.isFlat ? circle(0, 1) : [...circle(0, 1), ...circle(0, 2), ...circle(1, 2)];
     this.frameInk = [];
-    [edges, isRound ? circles : box].forEach((pairs, side) => {
+    const axes = edges.filter(([a]) => a.every((share) => share === 0));
+    [axes, isRound ? circles : box].forEach((pairs, side) => {
       const points = new Float32Array(pairs.flat(2));
       const indices = Uint32Array.from({ length: pairs.length * 2 }, (_, i) => i);
-      const material = this.segmentMaterial([0.5, 0.5, 0.5, side ? 0.7 : 0.3], side ? 1.1 : 0.8, 0, { cutSpace: { value: 0 } });
+      const material = this.segmentMaterial([0.5, 0.5, 0.5, side ? 0.7 : 0.55], side ? 1.1 : 1, 0, { cutSpace: { value: 0 } });
       this.frameInk.push(material);
       this.add(segmentGeometry({ source: points, image: points }, indices), material, { parent: this.frames[side] });
     });

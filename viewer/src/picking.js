@@ -108,7 +108,7 @@ export class Probe {
         return;
       }
       const shares = side === 0 ? hit.source : hit.image;
-      const seen = this.project(pane, shares);
+      const seen = this.project(pane);
       ring.style.transform = `translate(${seen.x}px, ${seen.y}px)`;
       const isHidden = pane !== hit.pane && this.isHidden(pane, seen, hit);
       ring.classList.toggle('behind', isHidden);
@@ -120,12 +120,12 @@ export class Probe {
     });
   }
 
-  project(pane, shares) {
+  /** Where the found point is seen in a pane, in pixels. */
+  project(pane) {
     const { spaces } = this.model;
     const source = toDisplay(spaces.source, this.hit.source);
     const target = toDisplay(spaces.target, this.hit.image);
     const morph = pane.side === 0 ? this.views.settings.morph : 1;
-    void shares;
     const p = new Vector3(...source).lerp(new Vector3(...target), morph).project(pane.camera);
     const { clientWidth: width, clientHeight: height } = pane.element;
     return { x: ((p.x + 1) / 2) * width, y: ((1 - p.y) / 2) * height };

@@ -40,7 +40,7 @@ vec3 centred(vec3 t) { return target == 0 ? vec3(2.0 * t.xy - 1.0, 0.0) : target
 
 vec3 placeColour(vec3 t) {
   vec3 c = centred(t);
-  return vec3(0.70 + 0.13 * c.z, 0.125 * c.x, 0.125 * c.y);
+  return vec3(0.72 + 0.12 * c.z, 0.105 * c.x, 0.105 * c.y);
 }
 
 vec3 encode(vec3 linear) {

@@ -1,6 +1,6 @@
 // Two panes, one canvas: each pane has a camera, both look at the same model from their side.
 
-import { PerspectiveCamera, Spherical, Vector3, WebGLRenderer } from 'three';
+import { PerspectiveCamera, Quaternion, Spherical, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 const FIELD_OF_VIEW = 32;
@@ -49,7 +49,7 @@ class Pane {
     const { clientWidth: width, clientHeight: height } = this.element;
     const narrow = Math.min(1, width / Math.max(height, 1));
     const half = Math.atan(Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * narrow);
-    camera.position.copy(direction.multiplyScalar((this.isFlat ? 0.92 : 1.02) / Math.sin(half)));
+    camera.position.copy(direction.multiplyScalar((this.isFlat ? this.views.flatFit : 1.02) / Math.sin(half)));
     this.controls = new OrbitControls(camera, this.element);
     Object.assign(this.controls, { enableDamping: false, minDistance: 0.3, maxDistance: 20, zoomSpeed: 1.2 });
     if (this.isFlat) {
@@ -80,13 +80,13 @@ class Pane {
       controls.target.add(shift);
     } else {
       // Spherical counts from the y axis: express the offset with the up axis there.
-      const toY = controls._quat ?? { conjugate: null };
-      if (toY.clone) offset.applyQuaternion(toY);
+      const toY = new Quaternion().setFromUnitVectors(camera.up, new Vector3(0, 1, 0));
+      offset.applyQuaternion(toY);
       const spherical = new Spherical().setFromVector3(offset);
       spherical.theta -= right * 0.12;
       spherical.phi = Math.min(Math.PI - 0.02, Math.max(0.02, spherical.phi + up * 0.12));
       offset.setFromSpherical(spherical);
-      if (toY.clone) offset.applyQuaternion(toY.clone().invert());
+      offset.applyQuaternion(toY.invert());
       camera.position.copy(controls.target).add(offset);
     }
     controls.update();
@@ -118,6 +118,8 @@ export class Views {
     this.container = container;
     this.model = model;
     this.settings = null;
+    // The corners of a square reach the radius 1 of display space only along its diagonals.
+    this.flatFit = model.data.target === 'disk' ? 1.14 : 0.92;
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.autoClear = false;
     this.renderer.setScissorTest(true);

@@ -56,7 +56,7 @@ impl Statistics {
 /// Plot area in the units of the drawing.
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 628.0;
-const TOP: f64 = 34.0;
+const TOP: f64 = 46.0;
 const BOTTOM: f64 = 214.0;
 
 /// The histogram as an `<svg>` element that takes its colours from the page.
@@ -145,7 +145,7 @@ fn draw_axis(svg: &mut String, statistics: &Statistics) {
 
 fn draw_marks(svg: &mut String, statistics: &Statistics) {
     let marks = [("median", statistics.median), ("95 %", statistics.percentile_95)];
-    let mut free_from = 150.0;
+    let mut free_from = LEFT;
     for (name, ratio) in marks.into_iter().filter(|(_, ratio)| ratio.is_finite()) {
         let x = x_of(statistics, ratio);
         let label = format!("{name} {}", rounded(ratio));
@@ -153,8 +153,8 @@ fn draw_marks(svg: &mut String, statistics: &Statistics) {
         let half = 3.5 * label.chars().count() as f64;
         let centre = x.max(free_from + half).min(RIGHT - half);
         free_from = centre + half + 6.0;
-        let _ = write!(svg, r#"<line class="mark" x1="{x:.1}" x2="{x:.1}" y1="{}" y2="{BOTTOM}"/>"#, TOP - 6.0);
+        let _ = write!(svg, r#"<line class="mark" x1="{x:.1}" x2="{x:.1}" y1="{}" y2="{BOTTOM}"/>"#, TOP - 10.0);
         let _ =
-            write!(svg, r#"<text class="mark" x="{centre:.1}" y="{}" text-anchor="middle">{label}</text>"#, TOP - 12.0);
+            write!(svg, r#"<text class="mark" x="{centre:.1}" y="{}" text-anchor="middle">{label}</text>"#, TOP - 14.0);
     }
 }
