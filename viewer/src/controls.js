@@ -63,7 +63,7 @@ export class Controls {
     const colourings = [['checks', 'checkerboard'], ['position', 'place in the target'], ['plain', 'one colour']];
     if (this.model.data.distortion) colourings.splice(2, 0, ['distortion', 'distortion']);
     const percent = (value) => `${Math.round(value * 100)} %`;
-    this.scale = element('div', { class: 'colour-scale' }, element('span', {}, '1'), element('i', {}), element('span', {}, `${this.model.data.distortion_end}`));
+    this.scale = element('div', { class: 'colour-scale' }, element('span', {}, '1'), element('i', {}), element('span', {}, `≥ ${this.model.data.distortion_end}`));
     return group(
       'Surface',
       this.field('colouring', (change) => choice('colouring', 'Colour', colourings, change)),
@@ -127,7 +127,7 @@ export class Controls {
     }));
     return group(
       'View',
-      this.field('morph', (change) => slider('morph', 'Morph to target', { min: 0, max: 1, step: 0.01, words: percent }, change)),
+      this.field('morph', (change) => slider('morph', 'Morph', { min: 0, max: 1, step: 0.01, words: percent }, change)),
       this.views.canLink ? this.field('linked', (change) => check('linked', 'Turn both sides together', change)) : null,
       up,
       element('div', { class: 'row buttons' }, home, save),

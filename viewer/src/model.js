@@ -14,6 +14,8 @@ export const TARGETS = ['square', 'disk', 'cube', 'ball'];
 export const COLOURINGS = ['checks', 'position', 'distortion', 'plain'];
 /** Objects on this layer answer to the pointer. */
 export const PICK_LAYER = 1;
+/** Width and height of the little picture of the source's axes, in pixels. */
+export const AXES_SIZE = 84;
 
 /** Settings and what they are at first. `cut` is `none` or side and axis, for example `target x`. */
 export function initialSettings(scene) {
@@ -134,10 +136,11 @@ export class Model {
     this.leaves.visible = false;
   }
 
-  /** Outline of the target and axes of the source's box; each is seen on its own side only. */
+  /** Outline of the target, and the directions of the source's axes as a scene of its own. */
   buildFrames() {
-    this.frames = [new Group(), new Group()];
-    this.frames.forEach((group) => this.root.add(group));
+    this.frame = new Group();
+    this.axes = new Scene();
+    this.root.add(this.frame);
     const corner = (n) => [n & 1, (n >> 1) & 1, (n >> 2) & 1];
     const edges = [];
     for (let n = 0; n < 8; n++) for (const bit of [1, 2, 4]) if (!(n & bit)) edges.push([corner(n), corner(n | bit)]);
@@ -154,14 +157,18 @@ export class Model {
     }));
     const circles = this.isFlat ? circle(0, 1) : [...circle(0, 1), ...circle(0, 2), ...circle(1, 2)];
     this.frameInk = [];
-    const axes = edges.filter(([a]) => a.every((share) => share === 0));
-    [axes, isRound ? circles : box].forEach((pairs, side) => {
-      const points = new Float32Array(pairs.flat(2));
-      const indices = Uint32Array.from({ length: pairs.length * 2 }, (_, i) => i);
-      const material = this.segmentMaterial([0.5, 0.5, 0.5, side ? 0.7 : 0.55], side ? 1.1 : 1, 0, { cutSpace: { value: 0 } });
-      this.frameInk.push(material);
-      this.add(segmentGeometry({ source: points, image: points }, indices), material, { parent: this.frames[side] });
-    });
+    this.addFrame(isRound ? circles : box, this.frame, { cutSpace: { value: 0 } });
+    const still = { cutSpace: { value: 0 }, side: { value: 0 }, resolution: { value: new Vector2(AXES_SIZE, AXES_SIZE) } };
+    const unit = { sourceScale: { value: new Vector3(1, 1, 1) }, sourceOffset: { value: new Vector3(0, 0, 0) } };
+    this.addFrame([0, 1, 2].map((axis) => [[0, 0, 0], corner(1 << axis)]), this.axes, { ...still, ...unit });
+  }
+
+  addFrame(pairs, parent, own) {
+    const points = new Float32Array(pairs.flat(2));
+    const indices = Uint32Array.from({ length: pairs.length * 2 }, (_, i) => i);
+    const material = this.segmentMaterial([0.5, 0.5, 0.5, 0.75], 1.2, 0, own);
+    this.frameInk.push(material);
+    this.add(segmentGeometry({ source: points, image: points }, indices), material, { parent });
   }
 
   /** Colours that follow the page's theme, as three shares of 1 in the page's colour space. */
@@ -264,8 +271,7 @@ export class Model {
   setSide(side, morph, width, height) {
     this.shared.side.value = side === 0 ? morph : 1;
     this.shared.resolution.value.set(width, height);
-    this.frames[0].visible = side === 0 && morph < 0.5;
-    this.frames[1].visible = side === 1 || morph >= 0.5;
+    this.frame.visible = side === 1 || morph >= 0.5;
     this.surface.material.uniforms.insideSign.value = this.insideSigns[side === 0 && morph < 0.5 ? 0 : 1];
   }
 

@@ -104,7 +104,7 @@ export class Probe {
       ring.hidden = !hit;
       const frame = side === 0 ? model.data.source_frame : model.data.image_frame;
       if (!hit) {
-        this.readouts[side].textContent = this.picker.isAvailable ? 'Point at either side to see the matching point (display only).' : 'This browser cannot look up points.';
+        this.readouts[side].textContent = this.picker.isAvailable ? 'Point at a side to find the matching point (display only).' : 'This browser cannot look up points.';
         return;
       }
       const shares = side === 0 ? hit.source : hit.image;

@@ -90,8 +90,9 @@ float checker(vec3 t) {
     float r = length(t);
     // On the boundary a plane triangle dips below the sphere; that must not change the square.
     p.x = skipAxis == -2 ? 0.5 : r * checks * 0.5;
-    p.y = (atan(t.y, t.x) / 6.283185307 + 0.5) * checks * 2.0;
-    p.z = target == 1 ? 0.5 : acos(clamp(t.z / max(r, 1e-6), -1.0, 1.0)) / 3.141592654 * checks;
+    // Half a square further, so that the planes x = 0, y = 0 and z = 0 do not run between squares.
+    p.y = (atan(t.y, t.x) / 6.283185307 + 0.5) * checks * 2.0 + 0.5;
+    p.z = target == 1 ? 0.5 : acos(clamp(t.z / max(r, 1e-6), -1.0, 1.0)) / 3.141592654 * checks + 0.5;
   } else {
     p = clamp(t, 1e-4, 1.0 - 1e-4) * checks;
     if (target == 0) p.z = 0.5;

@@ -3,6 +3,8 @@
 import { PerspectiveCamera, Quaternion, Spherical, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
+import { AXES_SIZE } from './model.js';
+
 const FIELD_OF_VIEW = 32;
 const UPS = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 const HOMES = { x: [0.55, 0.9, 1.5], y: [0.9, 0.62, 1.5], z: [0.9, -1.5, 0.62] };
@@ -126,6 +128,7 @@ export class Views {
     this.renderer.domElement.setAttribute('aria-hidden', 'true');
     container.append(this.renderer.domElement);
     this.panes = elements.map((element, side) => new Pane(element, side, model, this));
+    this.axesCamera = new PerspectiveCamera(42, 1, 0.1, 10);
     this.afterDraw = [];
     new ResizeObserver(() => this.resize()).observe(container);
   }
@@ -166,6 +169,17 @@ export class Views {
     requestAnimationFrame(() => this.draw());
   }
 
+  /** The directions of the axes, in a corner of the source's pane. */
+  drawAxes(pane, x, y) {
+    const { renderer, model, axesCamera } = this;
+    axesCamera.up.copy(pane.camera.up);
+    axesCamera.position.copy(pane.camera.position).sub(pane.controls.target).setLength(4);
+    axesCamera.lookAt(0, 0, 0);
+    renderer.setViewport(x, y, AXES_SIZE, AXES_SIZE);
+    renderer.setScissor(x, y, AXES_SIZE, AXES_SIZE);
+    renderer.render(model.axes, axesCamera);
+  }
+
   draw() {
     this.isWaiting = false;
     if (!this.settings || !this.panes[0].controls) return;
@@ -184,6 +198,7 @@ export class Views {
       renderer.setScissor(x, y, box.width, box.height);
       model.setSide(pane.side, this.settings.morph, box.width, box.height);
       renderer.render(model.root, pane.camera);
+      if (pane.side === 0) this.drawAxes(pane, x + box.width - AXES_SIZE - 6, y + 34);
     }
     for (const callback of this.afterDraw) callback();
   }

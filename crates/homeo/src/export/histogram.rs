@@ -117,7 +117,11 @@ fn draw_bars(svg: &mut String, statistics: &Statistics, top_share: f64) {
 
 fn draw_axis(svg: &mut String, statistics: &Statistics) {
     let _ = write!(svg, r#"<line class="axis" x1="{LEFT}" x2="{RIGHT}" y1="{BOTTOM}" y2="{BOTTOM}"/>"#);
-    let multiples: &[f64] = if statistics.decades < 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let multiples: &[f64] = match statistics.decades {
+        short if short < 0.8 => &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0],
+        middle if middle < 3.0 => &[1.0, 2.0, 5.0],
+        _ => &[1.0],
+    };
     let stride = (statistics.decades / 12.0).ceil().max(1.0) as usize;
     for decade in (0..=statistics.decades.floor() as i32).step_by(stride) {
         for multiple in multiples {
