@@ -138,11 +138,14 @@ void main() {
   float key = max(dot(normal, normalize(vec3(-0.35, 0.55, 0.75))), 0.0);
   float fill = max(dot(normal, normalize(vec3(0.7, -0.2, 0.5))), 0.0);
   float gloss = pow(max(dot(normal, normalize(view + vec3(-0.35, 0.55, 0.75))), 0.0), 40.0);
-  vec3 lit = base * (0.40 + 0.55 * key + 0.20 * fill) + 0.05 * gloss;
+  // Measured colours must stay readable: less shadow, no highlights.
+  vec3 lit = colouring == 2 ? base * (0.66 + 0.34 * key) : base * (0.40 + 0.55 * key + 0.20 * fill) + 0.05 * gloss;
   if (edges > 0.0) {
     vec3 width = fwidth(vEdge);
     vec3 near = smoothstep(width * 0.3, width * 1.3, vEdge);
-    lit = mix(lit, edgeColour, (1.0 - min(near.x, min(near.y, near.z))) * edges);
+    // Triangles of a few pixels would drown in their edges.
+    float room = clamp(1.6 - 4.0 * max(width.x, max(width.y, width.z)), 0.15, 1.0);
+    lit = mix(lit, edgeColour, (1.0 - min(near.x, min(near.y, near.z))) * edges * room);
   }
   // A veil is denser where it is seen edge-on, so that the outline stays.
   float veil = opacity >= 1.0 ? 1.0 : mix(min(1.0, opacity * 2.2 + 0.12), opacity, abs(dot(normal, view)));

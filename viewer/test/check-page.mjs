@@ -33,7 +33,7 @@ async function open(browser, file, options = {}) {
   return { page, problems };
 }
 
-/** Mean difference of two pictures of the canvas, as a share of full brightness. */
+/** A small copy of the canvas. */
 async function canvasPixels(page) {
   return page.evaluate(() => {
     const canvas = document.querySelector('.views canvas');
@@ -45,6 +45,7 @@ async function canvasPixels(page) {
   });
 }
 
+/** Mean difference of two pictures of the canvas, as a share of full brightness. */
 function difference(a, b) {
   return a.reduce((sum, value, index) => sum + Math.abs(value - b[index]), 0) / (255 * a.length);
 }
@@ -82,9 +83,11 @@ async function checkControls(page) {
     await page.keyboard.press('ArrowLeft');
   });
   await expectChange(page, 'reset', () => page.click('text=Reset view'));
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('text=Save picture')]);
+  assert.equal(download.suggestedFilename(), 'homeo-map.png');
 }
 
-/** The point that is found must be a point of the map: its colour is the same on both sides by construction. */
+/** The image that is found for a point of the target is that point itself. */
 async function checkPicking(page) {
   const box = await page.locator('.stage').nth(1).boundingBox();
   await page.mouse.move(box.x + box.width * 0.45, box.y + box.height * 0.55);
