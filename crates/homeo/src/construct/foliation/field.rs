@@ -1,6 +1,6 @@
 //! The harmonic field that the front follows, and its weights.
 
-use homeo_core::mesh::{CELL_EDGES, CellId, EdgeIndex, SimplicialComplex, VertexId};
+use homeo_core::mesh::{CELL_EDGES, CellId, EdgeIndex, Facet, SimplicialComplex, VertexId};
 
 use crate::linear::GraphLaplacian;
 
@@ -62,22 +62,86 @@ pub(super) fn cotangent_weights<const K: usize>(
     weights
 }
 
-/// Rank of each cell by a field that is harmonic, 0 at `source` and 1 at `sink` vertices.
-///
-/// The cell's value is the mean of its vertices. Ties go by cell number.
-pub(super) fn harmonic_rank<const K: usize>(
+/// What the field is asked to do on the boundary.
+pub(super) enum Ends<'a> {
+    /// 0 at the first vertices and 1 at the others; no flux elsewhere.
+    Between(&'a [VertexId], &'a [VertexId]),
+    /// 0 at the vertices of a cell, and a flux through the boundary facets in proportion to their
+    /// size: outwards (1.0) or inwards (-1.0). So every part of the boundary gets its share of leaves.
+    Radial(CellId, &'a [Facet], f64),
+}
+
+/// A field at the vertices that grows along the flow, harmonic inside.
+pub(super) fn guiding_field<const K: usize>(
     complex: &SimplicialComplex<K>,
     positions: &[Vector],
     edges: &EdgeIndex<K>,
-    source: &[VertexId],
-    sink: &[VertexId],
+    ends: &Ends<'_>,
 ) -> Vec<f64> {
     let mut fixed = vec![None; complex.vertex_count()];
-    source.iter().for_each(|v| fixed[v.index()] = Some(0.0));
-    sink.iter().for_each(|v| fixed[v.index()] = Some(1.0));
+    let mut load = vec![0.0; complex.vertex_count()];
+    match ends {
+        Ends::Between(source, sink) => {
+            source.iter().for_each(|v| fixed[v.index()] = Some(0.0));
+            sink.iter().for_each(|v| fixed[v.index()] = Some(1.0));
+        }
+        Ends::Radial(centre, facets, outwards) => {
+            complex.cell(*centre).iter().for_each(|v| fixed[v.index()] = Some(0.0));
+            for facet in *facets {
+                let corners: Vec<VertexId> = complex.facet_vertices(facet.cell(), facet.opposite()).collect();
+                let share = outwards * facet_measure(&corners, positions) / corners.len() as f64;
+                corners.iter().for_each(|v| load[v.index()] += share);
+            }
+        }
+    }
     let weights = cotangent_weights(complex, positions, edges);
     let laplacian = GraphLaplacian::new(complex.vertex_count(), edges.ends(), &weights);
-    let field = laplacian.harmonic_iterative(&fixed, 1e-8);
+    laplacian.solve_iterative(&fixed, &load, 1e-7)
+}
+
+fn facet_measure(corners: &[VertexId], positions: &[Vector]) -> f64 {
+    let edge = |i: usize| difference(positions[corners[i].index()], positions[corners[0].index()]);
+    let span = if corners.len() == 3 { cross(edge(1), edge(2)).map(|x| x / 2.0) } else { edge(1) };
+    dot(span, span).sqrt()
+}
+
+/// The gradient of a field in each cell, smoothed: the mean over the cell's vertices of the mean over
+/// the cells around each (by measure), which slivers cannot spoil.
+pub(super) fn smoothed_gradients<const K: usize>(
+    complex: &SimplicialComplex<K>,
+    positions: &[Vector],
+    field: &[f64],
+) -> Vec<[f32; 3]> {
+    let mut sums = vec![([0.0; 3], 0.0); complex.vertex_count()];
+    for cell in complex.cells() {
+        let (gradients, measure) = gradients(cell.map(|v| positions[v.index()]));
+        let weighted: Vector =
+            std::array::from_fn(|axis| (0..K).map(|i| measure * field[cell[i].index()] * gradients[i][axis]).sum());
+        if !weighted.iter().all(|x| x.is_finite()) {
+            continue;
+        }
+        for vertex in cell {
+            let (sum, total) = &mut sums[vertex.index()];
+            (0..3).for_each(|axis| sum[axis] += weighted[axis]);
+            *total += measure.abs();
+        }
+    }
+    let mean = |v: VertexId| {
+        let (sum, total) = sums[v.index()];
+        if total > 0.0 { sum.map(|x| x / total) } else { [0.0; 3] }
+    };
+    complex
+        .cells()
+        .iter()
+        .map(|cell| {
+            let means = cell.map(mean);
+            std::array::from_fn(|axis| (means.iter().map(|m| m[axis]).sum::<f64>() / K as f64) as f32)
+        })
+        .collect()
+}
+
+/// Rank of each cell by the mean of a field over its vertices.
+pub(super) fn cell_means<const K: usize>(complex: &SimplicialComplex<K>, field: &[f64]) -> Vec<f64> {
     complex.cells().iter().map(|cell| cell.iter().map(|v| field[v.index()]).sum()).collect()
 }
 
