@@ -6,8 +6,8 @@ use homeo_core::mesh::{Adjacency, CellId, EdgeIndex, Facet};
 
 use super::boundary::{BoundarySurface, facet_masks, marked_facets};
 use super::directions::Flow;
-use super::field::{Ends, cell_means, guiding_field, ranks, smoothed_gradients};
-use super::front::{Front, Side, Stuck, Surroundings, marked_vertices, positions_in};
+use super::field::{cell_means, guiding_field, ranks, smoothed_gradients};
+use super::front::{Front, Side, Stuck, Surroundings, positions_in};
 use super::{FoliationError, FoliationInfo, FoliationParams, regions, section};
 use crate::input::SourceMesh;
 use crate::map::{Centre, Foliation, FoliationParts, Section, Target};
@@ -286,15 +286,10 @@ impl<const K: usize> Build<'_, K> {
     }
 
     fn field(&self, stage: &Stage<K>, surroundings: &Surroundings) -> Vec<f64> {
-        let complex = stage.mesh.complex();
-        let solve = |ends: &Ends<'_>| guiding_field(complex, &stage.guide, &stage.edges, ends);
-        if let Some((centre, side)) = surroundings.centre {
-            let outwards = if side == Side::Source { 1.0 } else { -1.0 };
-            let boundary: Vec<Facet> = stage.adjacency.boundary_facets().collect();
-            return solve(&Ends::Radial(centre, &boundary, outwards));
-        }
-        let ends = [&surroundings.source, &surroundings.sink].map(|masks| marked_vertices(complex, masks));
-        solve(&Ends::Between(&ends[0], &ends[1]))
+        let [source, sink] =
+            [&surroundings.source, &surroundings.sink].map(|masks| marked_facets(masks).collect::<Vec<_>>());
+        let centre = surroundings.centre.map(|(cell, _)| cell);
+        guiding_field(stage.mesh.complex(), &stage.guide, &stage.edges, &source, &sink, centre)
     }
 
     /// Refines round the cells that a front could not take, or everything after several such tries.

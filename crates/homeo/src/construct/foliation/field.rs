@@ -62,46 +62,51 @@ pub(super) fn cotangent_weights<const K: usize>(
     weights
 }
 
-/// What the field is asked to do on the boundary.
-pub(super) enum Ends<'a> {
-    /// 0 at the first vertices and 1 at the others; no flux elsewhere.
-    Between(&'a [VertexId], &'a [VertexId]),
-    /// 0 at the vertices of a cell, and a flux through the boundary facets in proportion to their
-    /// size: outwards (1.0) or inwards (-1.0). So every part of the boundary gets its share of leaves.
-    Radial(CellId, &'a [Facet], f64),
-}
-
-/// A field at the vertices that grows along the flow, harmonic inside.
+/// A field at the vertices that grows along the flow and is harmonic inside.
+///
+/// Leaves come in through the source facets and go out through the sink facets with a flux in
+/// proportion to the facets' size, so that every part of both regions gets its share; a centre takes up the rest.
+/// (Constant values on the regions, as the source paper has it, send next to no leaves to the far end
+/// of a long region.)
 pub(super) fn guiding_field<const K: usize>(
     complex: &SimplicialComplex<K>,
     positions: &[Vector],
     edges: &EdgeIndex<K>,
-    ends: &Ends<'_>,
+    source: &[Facet],
+    sink: &[Facet],
+    centre: Option<CellId>,
 ) -> Vec<f64> {
     let mut fixed = vec![None; complex.vertex_count()];
     let mut load = vec![0.0; complex.vertex_count()];
-    match ends {
-        Ends::Between(source, sink) => {
-            source.iter().for_each(|v| fixed[v.index()] = Some(0.0));
-            sink.iter().for_each(|v| fixed[v.index()] = Some(1.0));
+    for (facets, sign) in [(source, -1.0), (sink, 1.0)] {
+        let total: f64 = facets.iter().map(|&f| facet_measure(complex, f, positions)).sum();
+        for &facet in facets {
+            let share =
+                sign * facet_measure(complex, facet, positions) / (total.max(f64::MIN_POSITIVE) * (K - 1) as f64);
+            complex.facet_vertices(facet.cell(), facet.opposite()).for_each(|v| load[v.index()] += share);
         }
-        Ends::Radial(centre, facets, outwards) => {
-            complex.cell(*centre).iter().for_each(|v| fixed[v.index()] = Some(0.0));
-            for facet in *facets {
-                let corners: Vec<VertexId> = complex.facet_vertices(facet.cell(), facet.opposite()).collect();
-                let share = outwards * facet_measure(&corners, positions) / corners.len() as f64;
-                corners.iter().for_each(|v| load[v.index()] += share);
-            }
+    }
+    // Something must be fixed: the field is known up to a constant.
+    match (centre, source.first()) {
+        (Some(cell), _) => complex.cell(cell).iter().for_each(|v| fixed[v.index()] = Some(0.0)),
+        (None, Some(facet)) => {
+            complex.facet_vertices(facet.cell(), facet.opposite()).take(1).for_each(|v| fixed[v.index()] = Some(0.0));
         }
+        (None, None) => {}
     }
     let weights = cotangent_weights(complex, positions, edges);
     let laplacian = GraphLaplacian::new(complex.vertex_count(), edges.ends(), &weights);
     laplacian.solve_iterative(&fixed, &load, 1e-7)
 }
 
-fn facet_measure(corners: &[VertexId], positions: &[Vector]) -> f64 {
-    let edge = |i: usize| difference(positions[corners[i].index()], positions[corners[0].index()]);
-    let span = if corners.len() == 3 { cross(edge(1), edge(2)).map(|x| x / 2.0) } else { edge(1) };
+/// Length or area of a facet.
+fn facet_measure<const K: usize>(complex: &SimplicialComplex<K>, facet: Facet, positions: &[Vector]) -> f64 {
+    let mut corners = [[0.0; 3]; K];
+    for (corner, vertex) in corners.iter_mut().zip(complex.facet_vertices(facet.cell(), facet.opposite())) {
+        *corner = positions[vertex.index()];
+    }
+    let first = difference(corners[1], corners[0]);
+    let span = if K == 4 { cross(first, difference(corners[2], corners[0])).map(|x| x / 2.0) } else { first };
     dot(span, span).sqrt()
 }
 
