@@ -34,7 +34,7 @@ fn files() -> Vec<Vec<u8>> {
 fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
     for _ in 0..1 + random.below(3) {
         let at = random.below(bytes.len() as u64) as usize;
-        match random.below(8) {
+        match random.below(9) {
             0 => bytes[at] ^= 1 << random.below(8),
             1 => bytes[at] = random.bits() as u8,
             2 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff][random.below(5) as usize],
@@ -45,6 +45,7 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
                 bytes.swap(at, other);
             }
             6 => bytes.truncate(at.max(1)),
+            7 => bytes[at..].fill([0, 0xff][random.below(2) as usize]),
             _ => {
                 let value = (random.bits() as u32 >> random.below(32)).to_le_bytes();
                 bytes.iter_mut().skip(at).zip(value).for_each(|(byte, new)| *byte = new);
