@@ -53,7 +53,12 @@ impl<const K: usize> Foliation<K> {
             let weights = at.weights.map(|w| Rational::from_f64(w).unwrap_or(Rational::ZERO));
             return Ok(ExactLocation { cell: at.cell, weights: whole(&weights) });
         }
-        self.locator.exact(self.source(), &self.parts().mesh, &rational_point(point))
+        let (source, mesh) = (self.source(), &self.parts().mesh);
+        // A point near a surface stands for the nearest point of the surface.
+        if K == 3 {
+            return self.locator.nearest_exact(source, mesh, point);
+        }
+        self.locator.exact(source, mesh, &rational_point(point))
     }
 
     pub(super) fn fast_image(&self, at: &FloatLocation<K>) -> Result<Enclosed, Undecided> {

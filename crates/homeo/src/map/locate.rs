@@ -9,6 +9,7 @@ use homeo_core::spatial::{Aabb, Tree};
 
 use super::EvaluationError;
 use super::exact::{ExactLocation, whole};
+use super::nearest::{Projection, exact_cross, exact_dot, minus, nearest_exactly};
 use crate::input::SourceMesh;
 use crate::refine::RefinedMesh;
 
@@ -99,7 +100,7 @@ impl<const K: usize> Locator<K> {
             }
         }
         let (cell, weights) = found.ok_or(EvaluationError::OutsideSource)?;
-        Ok(self.child_exact(source, mesh, cell, &weights))
+        self.child_exact(source, mesh, cell, &weights)
     }
 
     /// The child of a source cell that contains the point with the given weights.
@@ -109,16 +110,16 @@ impl<const K: usize> Locator<K> {
         mesh: &RefinedMesh<K>,
         cell: CellId,
         weights: &[IBig; K],
-    ) -> ExactLocation<K> {
+    ) -> Result<ExactLocation<K>, EvaluationError> {
         let parent = source.complex().cell(cell);
         for child in self.children(cell) {
             let frame = ChildFrame::new(mesh, parent, child);
             let inner = frame.inner_exact(weights);
             if inner.iter().all(|w| !w.is_negative()) {
-                return ExactLocation { cell: child, weights: inner };
+                return Ok(ExactLocation { cell: child, weights: inner });
             }
         }
-        panic!("the children of source cell {cell} do not cover it (please report this)");
+        Err(EvaluationError::NotCovered(cell.raw()))
     }
 
     /// The location of a point in floating point.
@@ -149,7 +150,10 @@ impl<const K: usize> Locator<K> {
         });
         if let Some(cell) = found {
             let (weights, errors) = volume_weights(&corners(source, cell), point);
-            return Ok(self.child_float(source, mesh, cell, weights, errors, point));
+            return Ok(match self.child_float(source, mesh, cell, weights, errors) {
+                Some(at) => Located::Float(at),
+                None => Located::Exact(self.exact(source, mesh, &rational_point(point))?),
+            });
         }
         // Just outside by rounding: the nearest of the cells around, with weights clamped.
         let slack = self.diagonal * ROUNDING;
@@ -175,20 +179,66 @@ impl<const K: usize> Locator<K> {
         mesh: &RefinedMesh<K>,
         point: [f64; 3],
     ) -> Result<Located<K>, EvaluationError> {
-        let slack = self.diagonal * OFF_SURFACE;
-        let region = Aabb { low: point.map(|x| x - slack), high: point.map(|x| x + slack) };
-        let mut best: Option<(f64, CellId, [f64; K])> = None;
-        self.tree.query_box(&region, |index| {
+        let mut vertex: Option<(CellId, usize)> = None;
+        let mut best: Option<(CellId, Projection<K>)> = None;
+        let mut rival = f64::INFINITY;
+        self.tree.query_box(&self.around(point), |index| {
             let cell = CellId::new(index);
             let corners = corners(source, cell);
-            let weights = nearest_weights(&corners, point);
-            let moved = distance(combination(&corners, &weights), point);
-            if moved <= slack && best.is_none_or(|(least, known, _)| (moved, cell) < (least, known)) {
-                best = Some((moved, cell, weights));
+            if let Some(i) = corners.iter().position(|&c| c == point) {
+                vertex = Some(vertex.map_or((cell, i), |first| first.min((cell, i))));
+            }
+            let projection = Projection::new(&corners, point);
+            let known = best.as_ref().map_or(f64::INFINITY, |(_, best)| best.distance_at_most);
+            if projection.distance_at_most < known {
+                rival = best.as_ref().map_or(rival, |(_, old)| rival.min(old.distance_at_least));
+                best = Some((cell, projection));
+            } else {
+                rival = rival.min(projection.distance_at_least);
             }
         });
-        let (_, cell, weights) = best.ok_or(EvaluationError::OutsideSource)?;
-        Ok(self.child_of_weights(source, mesh, cell, weights))
+        if let Some((cell, i)) = vertex {
+            return Ok(self.child_of_weights(source, mesh, cell, std::array::from_fn(|k| f64::from(k == i))));
+        }
+        if let Some((cell, p)) = best.filter(|(_, p)| p.distance_at_most < rival.min(self.off_surface())) {
+            if let Some(at) = self.child_float(source, mesh, cell, p.weights, p.errors) {
+                return Ok(Located::Float(at));
+            }
+        }
+        self.nearest_exact(source, mesh, point).map(Located::Exact)
+    }
+
+    /// How far from a surface a point may be.
+    fn off_surface(&self) -> f64 {
+        self.diagonal * OFF_SURFACE
+    }
+
+    fn around(&self, point: [f64; 3]) -> Aabb {
+        let slack = self.off_surface();
+        Aabb { low: point.map(|x| (x - slack).next_down()), high: point.map(|x| (x + slack).next_up()) }
+    }
+
+    /// The location of the point of a surface that is nearest to a point, exactly; of several the one in the first cell.
+    pub fn nearest_exact(
+        &self,
+        source: &SourceMesh<K>,
+        mesh: &RefinedMesh<K>,
+        point: [f64; 3],
+    ) -> Result<ExactLocation<K>, EvaluationError> {
+        let mut best: Option<(Rational, CellId, [Rational; K])> = None;
+        let exact_point = rational_point(point);
+        self.tree.query_box(&self.around(point), |index| {
+            let cell = CellId::new(index);
+            if let Some((off, weights)) = nearest_exactly(&corners(source, cell), &exact_point) {
+                if best.as_ref().is_none_or(|(least, known, _)| (&off, cell) < (least, *known)) {
+                    best = Some((off, cell, weights));
+                }
+            }
+        });
+        let slack = Rational::from_f64(self.off_surface()).unwrap_or(Rational::ZERO);
+        let (_, cell, weights) =
+            best.filter(|(off, ..)| *off <= &slack * &slack).ok_or(EvaluationError::OutsideSource)?;
+        self.child_exact(source, mesh, cell, &whole(&weights))
     }
 
     /// The child that holds a point given by weights, which are taken for exact ones from here on.
@@ -213,6 +263,7 @@ impl<const K: usize> Locator<K> {
         Located::Float(FloatLocation { cell: best.1, weights, errors, is_exact: true })
     }
 
+    /// The child that holds a point of a cell, where rounding leaves no doubt.
     fn child_float(
         &self,
         source: &SourceMesh<K>,
@@ -220,23 +271,17 @@ impl<const K: usize> Locator<K> {
         cell: CellId,
         weights: [f64; K],
         errors: [f64; K],
-        point: [f64; 3],
-    ) -> Located<K> {
+    ) -> Option<FloatLocation<K>> {
         let mut children = self.children(cell);
         if children.len() == 1 {
-            let cell = children.next().unwrap_or(cell);
-            return Located::Float(FloatLocation { cell, weights, errors, is_exact: false });
+            return children.next().map(|cell| FloatLocation { cell, weights, errors, is_exact: false });
         }
         let parent = source.complex().cell(cell);
-        for child in self.children(cell) {
-            let (weights, errors) = ChildFrame::new(mesh, parent, child).inner_float(&weights, &errors);
-            if weights.iter().zip(&errors).all(|(w, e)| w >= e) {
-                return Located::Float(FloatLocation { cell: child, weights, errors, is_exact: false });
-            }
-        }
-        let exact = exact_weights(&corners(source, cell), &rational_point(point))
-            .unwrap_or_else(|| panic!("the exact predicate placed the point in cell {cell} (please report this)"));
-        Located::Exact(self.child_exact(source, mesh, cell, &exact))
+        children.find_map(|cell| {
+            let (weights, errors) = ChildFrame::new(mesh, parent, cell).inner_float(&weights, &errors);
+            let is_inside = weights.iter().zip(&errors).all(|(w, e)| w >= e);
+            is_inside.then_some(FloatLocation { cell, weights, errors, is_exact: false })
+        })
     }
 
     /// The source weights of an exact location, with the source cell that they refer to.
@@ -381,21 +426,6 @@ fn same_point<const K: usize>(
     })
 }
 
-type ExactVector = [Rational; 3];
-
-fn minus(a: &ExactVector, b: &ExactVector) -> ExactVector {
-    [0, 1, 2].map(|axis| &a[axis] - &b[axis])
-}
-
-fn exact_cross(a: &ExactVector, b: &ExactVector) -> ExactVector {
-    let entry = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
-    [entry(1, 2), entry(2, 0), entry(0, 1)]
-}
-
-fn exact_dot(a: &ExactVector, b: &ExactVector) -> Rational {
-    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
-}
-
 /// Barycentric weights of a rational point in a cell, up to a positive factor; `None` when outside.
 fn exact_weights<const K: usize>(corners: &[[f64; 3]; K], point: &[Rational; 3]) -> Option<[IBig; K]> {
     let mut exact = Vec::with_capacity(K);
@@ -497,36 +527,4 @@ fn combination<const K: usize>(corners: &[[f64; 3]; K], weights: &[f64; K]) -> [
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
-}
-
-/// Weights of the point of a triangle that is nearest to a point (rounded).
-fn nearest_weights<const K: usize>(corners: &[[f64; 3]; K], point: [f64; 3]) -> [f64; K] {
-    let mut best = [0.0; K];
-    if let Some(vertex) = corners.iter().position(|&c| c == point) {
-        best[vertex] = 1.0;
-        return best;
-    }
-    let minus = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let (u, v, p) = (minus(corners[1], corners[0]), minus(corners[2], corners[0]), minus(point, corners[0]));
-    let (uu, uv, vv, pu, pv) = (dot(u, u), dot(u, v), dot(v, v), dot(p, u), dot(p, v));
-    let denominator = uu * vv - uv * uv;
-    let (s, t) = ((pu * vv - pv * uv) / denominator, (pv * uu - pu * uv) / denominator);
-    if s >= 0.0 && t >= 0.0 && s + t <= 1.0 {
-        (best[0], best[1], best[2]) = (1.0 - s - t, s, t);
-        return best;
-    }
-    let mut least = f64::INFINITY;
-    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-        let edge = minus(corners[j], corners[i]);
-        let along = (dot(minus(point, corners[i]), edge) / dot(edge, edge)).clamp(0.0, 1.0);
-        let mut weights = [0.0; K];
-        weights[i] = 1.0 - along;
-        weights[j] = along;
-        let off = distance(combination(corners, &weights), point);
-        if off < least {
-            (least, best) = (off, weights);
-        }
-    }
-    best
 }
