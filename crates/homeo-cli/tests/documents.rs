@@ -7,26 +7,34 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the repository")
 }
 
-/// All files of the repository but build products and what tools keep for themselves.
+/// The files under version control; in a plain copy of the sources, all but build products.
 fn files() -> Vec<PathBuf> {
+    let listed = std::process::Command::new("git").args(["ls-files", "-z"]).current_dir(root()).output();
+    let mut files: Vec<PathBuf> = match listed {
+        Ok(output) if output.status.success() && !output.stdout.is_empty() => {
+            let names = String::from_utf8_lossy(&output.stdout).into_owned();
+            names.split_terminator('\0').map(|name| root().join(name)).filter(|path| path.is_file()).collect()
+        }
+        _ => walked(),
+    };
+    files.sort();
+    files
+}
+
+fn walked() -> Vec<PathBuf> {
     let mut files = Vec::new();
     let mut open = vec![root()];
     while let Some(folder) = open.pop() {
         for entry in std::fs::read_dir(&folder).expect("a readable folder").flatten() {
-            let (path, name) = (entry.path(), entry.file_name());
-            let name = name.to_string_lossy();
-            if path.is_dir() {
-                let is_product = matches!(name.as_ref(), ".git" | "target" | "out" | "node_modules" | "corpus");
-                let is_beside = folder == root() && name == "shared";
-                if !is_product && !is_beside {
-                    open.push(path);
-                }
-            } else {
-                files.push(path);
+            let name = entry.file_name();
+            let is_product = matches!(name.to_string_lossy().as_ref(), ".git" | "target" | "out" | "node_modules");
+            match entry.path() {
+                _ if is_product => {}
+                path if path.is_dir() => open.push(path),
+                path => files.push(path),
             }
         }
     }
-    files.sort();
     files
 }
 
@@ -115,7 +123,10 @@ fn broken_links_are_seen() {
     let readme = root().join("README.md");
     let seen = broken(&readme, "[a](no-such-file.md) and [b](README.md#no-such-heading) but [c](README.md), `[d](x)`");
     assert_eq!(seen.len(), 2, "{seen:?}");
-    assert!(broken(&readme, "[there](ARCHITECTURE.md) [outside](https://example.org/x)\n```\n[code](nowhere)\n```\n").is_empty());
+    assert!(
+        broken(&readme, "[there](ARCHITECTURE.md) [outside](https://example.org/x)\n```\n[code](nowhere)\n```\n")
+            .is_empty()
+    );
 }
 
 /// Code blocks without a language would be compiled as Rust where documents are tested.

@@ -130,7 +130,8 @@ fn every_dependency_of_the_default_build_leaves_a_permissive_choice() {
         if !reached.contains(package["id"].as_str().unwrap_or_default()) {
             continue;
         }
-        let name = format!("{} {}", package["name"].as_str().unwrap_or("?"), package["version"].as_str().unwrap_or("?"));
+        let name =
+            format!("{} {}", package["name"].as_str().unwrap_or("?"), package["version"].as_str().unwrap_or("?"));
         let expression = package["license"].as_str().unwrap_or("(none stated)");
         if let Err(why) = permitted(expression) {
             refused.push(format!("{name}: {expression}: {why}"));
