@@ -138,6 +138,9 @@ impl<'b> File<'b> {
         if directions.len() != count || lengths.len() != count {
             return inconsistent(format!("{count} cells need as many directions and lengths"));
         }
+        if lengths.contains(&0) {
+            return inconsistent("a length is 0");
+        }
         let centre = centre(target, manifest, count)?;
         let section = self.section(target, mesh.complex().vertex_count())?;
         let length_unit = manifest.get("length_unit").and_then(Value::as_f64).unwrap_or(1.0);
@@ -183,8 +186,12 @@ impl<'b> File<'b> {
         }
         let parameters = self.array::<f64>("section_coordinates", 1)?;
         let increasing = parameters.windows(2).all(|w| w[0] < w[1]) && parameters.first() == Some(&0.0);
+        let ends_well = |last: &f64| if target == Target::Square { *last == 1.0 } else { *last < 4.0 };
         if parameters.len() != vertices.len() || parameters.len() < 2 || !increasing {
             return inconsistent("the section needs one parameter for each of its vertices, increasing from 0");
+        }
+        if !parameters.last().is_some_and(ends_well) {
+            return inconsistent("the section's parameters must end at 1 for a square and below 4 for a disk");
         }
         Ok(if target == Target::Square {
             Section::Arc { vertices, parameters }
@@ -256,15 +263,16 @@ fn check_directions<const K: usize>(parts: &FoliationParts<K>, adjacency: &Adjac
 /// Leaves begin and end where the section and the centre say.
 fn check_section<const K: usize>(parts: &FoliationParts<K>, adjacency: &Adjacency<K>) -> Result<(), MapFileError> {
     let complex = parts.mesh.complex();
-    let mut known = vec![false; complex.vertex_count()];
+    let mut number = vec![None; complex.vertex_count()];
     let mut edges = 0;
     if let Section::Arc { vertices, .. } | Section::Loop { vertices, .. } | Section::Square { vertices, .. } =
         &parts.section
     {
-        vertices.iter().for_each(|v| known[v.index()] = true);
+        vertices.iter().enumerate().for_each(|(k, v)| number[v.index()] = Some(k));
         edges = vertices.len() - usize::from(matches!(parts.section, Section::Arc { .. }));
     }
     let mut sources = 0;
+    let mut at_ends = vec![0u8; complex.vertex_count()];
     for facet in adjacency.boundary_facets() {
         if parts.centre.is_some_and(|c| c.cell == facet.cell()) {
             return inconsistent("the centre lies on the boundary");
@@ -275,15 +283,20 @@ fn check_section<const K: usize>(parts: &FoliationParts<K>, adjacency: &Adjacenc
             Target::Ball => sign < 0,
             _ => true,
         };
-        let section_known =
-            sign <= 0 || complex.facet_vertices(facet.cell(), facet.opposite()).all(|v| known[v.index()]);
+        let corners = || complex.facet_vertices(facet.cell(), facet.opposite());
+        let numbers: Vec<usize> = corners().filter_map(|v| number[v.index()]).collect();
+        let section_known = sign <= 0 || is_section_facet::<K>(&parts.section, &numbers);
         if !expected || (parts.target != Target::Ball && !section_known) {
             return inconsistent(format!("leaves begin or end wrongly at boundary facet {facet:?}"));
         }
+        corners().for_each(|v| at_ends[v.index()] |= u8::from(sign > 0) | u8::from(sign < 0) << 1);
         sources += usize::from(sign > 0);
     }
     if matches!(parts.section, Section::Arc { .. } | Section::Loop { .. }) && sources != edges {
         return inconsistent("the section has another number of edges than the source region");
+    }
+    if let Some(vertex) = at_ends.iter().position(|&ends| ends == 3) {
+        return inconsistent(format!("vertex {vertex} lies on source and sink, where a leaf would have no length"));
     }
     let Some(centre) = parts.centre else { return Ok(()) };
     for i in 0..K {
@@ -294,4 +307,18 @@ fn check_section<const K: usize>(parts: &FoliationParts<K>, adjacency: &Adjacenc
         }
     }
     Ok(())
+}
+
+/// Whether a source facet, by the numbers of its vertices in the section, is one that evaluation will look up there.
+fn is_section_facet<const K: usize>(section: &Section, numbers: &[usize]) -> bool {
+    let follow = |count: usize, closes: bool| {
+        let gap = numbers[0].abs_diff(numbers[1]);
+        gap == 1 || (closes && gap == count - 1)
+    };
+    numbers.len() == K - 1
+        && match section {
+            Section::Arc { vertices, .. } => follow(vertices.len(), false),
+            Section::Loop { vertices, .. } => follow(vertices.len(), true),
+            Section::Square { .. } | Section::Centre => true,
+        }
 }

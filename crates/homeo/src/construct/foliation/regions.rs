@@ -128,10 +128,29 @@ pub(super) fn cube_caps<const K: usize>(
         (Some(source), Some(sink)) => [source, sink],
         (source, sink) => automatic_caps(&surface.triangles, &field, share, source, sink)?,
     };
+    // The source's boundary runs round a square, with a vertex at each corner.
+    if rim_length(&surface.triangles, &caps[0]) < 4 {
+        return Err(match requested.source {
+            None => RegionError::TooCoarse,
+            Some(_) => RegionError::Requested("the source region needs at least four edges on its boundary".to_owned()),
+        });
+    }
     let count = complex.cell_count();
     let masks = caps.map(|cap| facet_masks(count, cap.iter().map(|&t| surface.facets[t])));
     let [source, sink] = masks;
     Ok(Surroundings { source, sink, centre: None })
+}
+
+/// How many edges a set of triangles has on its boundary.
+fn rim_length(triangles: &TriangleComplex, chosen: &[usize]) -> usize {
+    let Ok(adjacency) = triangles.adjacency() else { return 0 };
+    let mut inside = vec![false; triangles.cell_count()];
+    chosen.iter().for_each(|&t| inside[t] = true);
+    let is_rim = |t: usize, i: usize| {
+        let far = adjacency.across(CellId::new(t), i);
+        far.is_none() || !inside[far.cell().index()]
+    };
+    chosen.iter().map(|&t| (0..3).filter(|&i| is_rim(t, i)).count()).sum()
 }
 
 fn requested_triangles(surface: &BoundarySurface, triangles: &[[u32; 3]]) -> Result<Vec<usize>, RegionError> {
