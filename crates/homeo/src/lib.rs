@@ -13,3 +13,6 @@ pub mod linear;
 pub mod map;
 pub mod progress;
 pub mod refine;
+
+#[cfg(doctest)]
+mod _documentation;

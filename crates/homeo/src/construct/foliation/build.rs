@@ -2,17 +2,20 @@
 
 use std::time::Instant;
 
-use homeo_core::mesh::{Adjacency, CellId, EdgeIndex, Facet};
+use homeo_core::mesh::{Adjacency, CellId, EdgeIndex, Facet, SimplicialComplex, VertexId};
 
-use super::boundary::{BoundarySurface, facet_masks, marked_facets};
+use super::boundary::{BoundarySurface, boundary_loop, facet_masks, marked_facets};
 use super::directions::Flow;
-use super::field::{cell_means, guiding_field, ranks, smoothed_gradients};
+use super::field::{cell_means, field_between, guiding_field, ranks, smoothed_gradients};
 use super::front::{Front, Side, Stuck, Surroundings, positions_in};
 use super::{FoliationError, FoliationInfo, FoliationParams, regions, section};
 use crate::input::SourceMesh;
 use crate::map::{Centre, Foliation, FoliationParts, Section, Target};
 use crate::progress::Progress;
 use crate::refine::{RefinedMesh, Stars, spanning_simplices};
+
+/// Up to which value of the Fiedler vector the caps of a cube grow, until the source has an embedding.
+const CAP_FRACTIONS: [f64; 4] = [0.25, 0.1, 0.03, 0.0];
 
 /// A mesh with everything that the steps ask of it.
 struct Stage<const K: usize> {
@@ -170,17 +173,32 @@ impl<const K: usize> Build<'_, K> {
                     other => return Ok(other?),
                 }
             },
-            Target::Cube => loop {
-                let requested = &self.params.regions;
-                match regions::cube_caps(stage.mesh.complex(), &stage.adjacency, &stage.guide, requested) {
-                    Err(regions::RegionError::TooCoarse) => self.barycentric(stage)?,
-                    other => {
-                        let mut surroundings = other?;
-                        self.unchord(stage, &mut surroundings)?;
-                        return Ok(surroundings);
-                    }
+            Target::Cube => self.surround_caps(stage),
+        }
+    }
+
+    /// Caps of a cube whose source has an embedding; smaller ones where the usual have none.
+    fn surround_caps(&mut self, stage: &mut Stage<K>) -> Result<Surroundings, FoliationError> {
+        let mut fractions = CAP_FRACTIONS.iter();
+        let mut fraction = fractions.next();
+        loop {
+            let requested = &self.params.regions;
+            let share = fraction.copied().unwrap_or(0.0);
+            let caps = regions::cube_caps(stage.mesh.complex(), &stage.adjacency, &stage.guide, requested, share);
+            let mut surroundings = match caps {
+                Err(regions::RegionError::TooCoarse) => {
+                    self.barycentric(stage)?;
+                    continue;
                 }
-            },
+                other => other?,
+            };
+            self.unchord(stage, &mut surroundings)?;
+            fraction = fractions.next();
+            match self.section(stage, &surroundings) {
+                Err(FoliationError::Section(_)) if fraction.is_some() && requested.source.is_none() => {}
+                Err(error) => return Err(error),
+                Ok(_) => return Ok(surroundings),
+            }
         }
     }
 
@@ -203,7 +221,11 @@ impl<const K: usize> Build<'_, K> {
             let surface = BoundarySurface::new(stage.mesh.complex(), marked_facets(&surroundings.source).collect());
             let adjacency = surface.triangles.adjacency().map_err(|c| FoliationError::Input(c.to_string()))?;
             let edges = surface.triangles.edges();
-            let chords = spanning_simplices(&surface.triangles, &adjacency, &edges).edges;
+            let mut chords = spanning_simplices(&surface.triangles, &adjacency, &edges).edges;
+            if boundary_loop(&surface.triangles, &adjacency).len() == 3 {
+                // The square has four corners.
+                chords.fill(true);
+            }
             let mut stars = stage.no_stars();
             for (ends, _) in edges.ends().iter().zip(&chords).filter(|&(_, &chord)| chord) {
                 let [a, b] = ends.map(|v| surface.vertices[v.index()]);
@@ -265,24 +287,33 @@ impl<const K: usize> Build<'_, K> {
         loop {
             self.begin("harmonic")?;
             let field = self.field(stage, surroundings);
-            let values = cell_means(stage.mesh.complex(), &field);
             self.begin("order")?;
-            let mut least: Option<Stuck> = None;
-            for attempt in 0..self.params.restarts.max(1) {
+            let mut values = cell_means(stage.mesh.complex(), &field);
+            let mut least: Option<Vec<CellId>> = None;
+            for attempt in 0..self.attempts(stage) {
                 self.check_limits()?;
+                if attempt == 2 {
+                    // Another field takes another way round what the first one got stuck on.
+                    values = cell_means(stage.mesh.complex(), &self.steep_field(stage, surroundings));
+                }
                 match advance(stage, surroundings, &values, attempt, self.params.seed) {
                     Ok(order) => return Ok((order, field)),
                     Err(stuck) => {
                         self.info.restarts += 1;
-                        if least.as_ref().is_none_or(|best| stuck.remaining.len() < best.remaining.len()) {
-                            least = Some(stuck);
+                        if least.as_ref().is_none_or(|best| stuck.remaining.len() < best.len()) {
+                            least = Some(stuck.remaining);
                         }
                     }
                 }
             }
-            let Some(stuck) = least else { continue };
-            self.refine_stuck(stage, surroundings, &stuck)?;
+            self.refine_stuck(stage, surroundings, &least.unwrap_or_default())?;
         }
+    }
+
+    /// Runs of the front before refinement: fewer on large meshes, where each takes seconds.
+    fn attempts(&self, stage: &Stage<K>) -> usize {
+        let affordable = 4_000_000 / stage.mesh.complex().cell_count().max(1);
+        self.params.restarts.clamp(1, affordable.max(4))
     }
 
     fn field(&self, stage: &Stage<K>, surroundings: &Surroundings) -> Vec<f64> {
@@ -292,26 +323,37 @@ impl<const K: usize> Build<'_, K> {
         guiding_field(stage.mesh.complex(), &stage.guide, &stage.edges, &source, &sink, centre)
     }
 
+    fn steep_field(&self, stage: &Stage<K>, surroundings: &Surroundings) -> Vec<f64> {
+        let complex = stage.mesh.complex();
+        let mut ends = [&surroundings.source, &surroundings.sink].map(|masks| facet_vertices(complex, masks));
+        if let Some((centre, side)) = surroundings.centre {
+            ends[usize::from(side == Side::Sink)] = complex.cell(centre).to_vec();
+        }
+        field_between(complex, &stage.guide, &stage.edges, &ends[0], &ends[1])
+    }
+
     /// Refines round the cells that a front could not take, or everything after several such tries.
     fn refine_stuck(
         &mut self,
         stage: &mut Stage<K>,
         surroundings: &mut Surroundings,
-        stuck: &Stuck,
+        stuck: &[CellId],
     ) -> Result<(), FoliationError> {
         let refinements = self.info.local_refinements + self.info.barycentric_refinements;
         let cells = stage.mesh.complex().cell_count();
-        if refinements >= self.params.refinements || cells > self.params.most_cells {
+        let everything = self.info.local_refinements >= 2 * (self.info.barycentric_refinements + 1);
+        let parts = if K == 4 { 24 } else { 6 };
+        let after = if everything { parts * cells } else { cells + parts * stuck.len() };
+        if refinements >= self.params.refinements || after > self.params.most_cells {
             self.end();
-            self.info.stuck_cells = stuck.remaining.len();
+            self.info.stuck_cells = stuck.len();
             self.info.cells = cells;
             return Err(FoliationError::Stuck(self.info.clone()));
         }
         self.begin("prepare")?;
         let mut stars = stage.no_stars();
         let everything = self.info.local_refinements >= 2 * (self.info.barycentric_refinements + 1);
-        let chosen: Vec<CellId> =
-            if everything { stage.mesh.complex().cell_ids().collect() } else { stuck.remaining.clone() };
+        let chosen: Vec<CellId> = if everything { stage.mesh.complex().cell_ids().collect() } else { stuck.to_vec() };
         for &cell in chosen.iter().filter(|&&cell| surroundings.centre.is_none_or(|(centre, _)| centre != cell)) {
             stars.cells[cell.index()] = true;
             stage.edges.of_cell(cell).iter().for_each(|edge| stars.edges[edge.index()] = true);
@@ -358,6 +400,15 @@ impl<const K: usize> Build<'_, K> {
     }
 }
 
+/// The vertices of the facets that a mask per cell marks, ascending.
+fn facet_vertices<const K: usize>(complex: &SimplicialComplex<K>, masks: &[u8]) -> Vec<VertexId> {
+    let mut vertices: Vec<VertexId> =
+        marked_facets(masks).flat_map(|f| complex.facet_vertices(f.cell(), f.opposite()).collect::<Vec<_>>()).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    vertices
+}
+
 /// One run of the front: from the source or from the sink, with the field or a disturbed one.
 fn advance<const K: usize>(
     stage: &Stage<K>,
@@ -366,8 +417,9 @@ fn advance<const K: usize>(
     attempt: usize,
     seed: u64,
 ) -> Result<Vec<CellId>, Stuck> {
-    let noise = if attempt < 2 { 0.0 } else { 0.02 * (attempt / 2) as f64 };
-    let disturbed = |index: usize, value: f64| value + noise * (unit_random(seed, attempt, index) - 0.5);
+    let noise = if attempt < 4 { 0.0 } else { 0.02 * (attempt / 2 - 1) as f64 };
+    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(l, h), &v| (l.min(v), h.max(v)));
+    let disturbed = |index: usize, value: f64| value + noise * (high - low) * (unit_random(seed, attempt, index) - 0.5);
     let backwards = attempt % 2 == 1;
     let sign = if backwards { -1.0 } else { 1.0 };
     let values: Vec<f64> = values.iter().enumerate().map(|(i, &v)| sign * disturbed(i, v)).collect();

@@ -99,6 +99,22 @@ pub(super) fn guiding_field<const K: usize>(
     laplacian.solve_iterative(&fixed, &load, 1e-7)
 }
 
+/// The field of the source paper: harmonic, 0 at `low` and 1 at `high` vertices.
+pub(super) fn field_between<const K: usize>(
+    complex: &SimplicialComplex<K>,
+    positions: &[Vector],
+    edges: &EdgeIndex<K>,
+    low: &[VertexId],
+    high: &[VertexId],
+) -> Vec<f64> {
+    let mut fixed = vec![None; complex.vertex_count()];
+    low.iter().for_each(|v| fixed[v.index()] = Some(0.0));
+    high.iter().for_each(|v| fixed[v.index()] = Some(1.0));
+    let weights = cotangent_weights(complex, positions, edges);
+    let laplacian = GraphLaplacian::new(complex.vertex_count(), edges.ends(), &weights);
+    laplacian.solve_iterative(&fixed, &vec![0.0; complex.vertex_count()], 1e-7)
+}
+
 /// Length or area of a facet.
 fn facet_measure<const K: usize>(complex: &SimplicialComplex<K>, facet: Facet, positions: &[Vector]) -> f64 {
     let mut corners = [[0.0; 3]; K];

@@ -150,8 +150,6 @@ pub struct Front<'a, const K: usize> {
 /// No cell is free any more although some remain.
 #[derive(Clone, Debug)]
 pub struct Stuck {
-    /// Cells that were removed, in order.
-    pub removed: Vec<CellId>,
     /// Cells that remain.
     pub remaining: Vec<CellId>,
 }
@@ -295,7 +293,7 @@ impl<'a, const K: usize> Front<'a, K> {
         }
         let centre = self.centre;
         let remaining = self.complex.cell_ids().filter(|&c| !self.removed[c.index()] && centre != Some(c)).collect();
-        Err(Stuck { removed: self.order, remaining })
+        Err(Stuck { remaining })
     }
 }
 

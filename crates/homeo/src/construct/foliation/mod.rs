@@ -32,12 +32,12 @@ use crate::refine::TooDeep;
 pub struct FoliationParams {
     /// Sweeps of smoothing over the direction field, each followed by turning of facets.
     pub smoothing_sweeps: usize,
-    /// Runs of the front before the mesh is refined: alternately from the source and from the sink,
-    /// from the third on with a disturbed field.
+    /// Runs of the front before the mesh is refined (fewer on large meshes): alternately from the source
+    /// and from the sink, from the third on with the paper's field, from the fifth on with it disturbed.
     pub restarts: usize,
     /// Refinements before the construction gives up.
     pub refinements: usize,
-    /// Cells beyond which nothing is refined any more.
+    /// No refinement that would make more cells than this is tried.
     pub most_cells: usize,
     /// Seed of the disturbances.
     pub seed: u64,
@@ -51,7 +51,7 @@ impl Default for FoliationParams {
             smoothing_sweeps: 10,
             restarts: 16,
             refinements: 6,
-            most_cells: 3_000_000,
+            most_cells: 4_000_000,
             seed: 1,
             regions: RequestedRegions::default(),
         }

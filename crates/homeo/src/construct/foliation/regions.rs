@@ -116,6 +116,7 @@ pub(super) fn cube_caps<const K: usize>(
     adjacency: &Adjacency<K>,
     positions: &[[f64; 3]],
     requested: &RequestedRegions,
+    share: f64,
 ) -> Result<Surroundings, RegionError> {
     let surface = BoundarySurface::new(complex, adjacency.boundary_facets().collect());
     let asked = |triangles: &Option<Vec<[u32; 3]>>| {
@@ -125,7 +126,7 @@ pub(super) fn cube_caps<const K: usize>(
     let field = fiedler_of_triangles(&surface, positions);
     let caps = match (source, sink) {
         (Some(source), Some(sink)) => [source, sink],
-        (source, sink) => automatic_caps(&surface.triangles, &field, source, sink)?,
+        (source, sink) => automatic_caps(&surface.triangles, &field, share, source, sink)?,
     };
     // The source's boundary runs round a square, with a vertex at each corner.
     if rim_length(&surface.triangles, &caps[0]) < 4 {
@@ -202,13 +203,14 @@ fn longest_axis(positions: &[[f64; 3]]) -> usize {
     (0..3).max_by(|&a, &b| extent(a).total_cmp(&extent(b))).unwrap_or(0)
 }
 
-/// Disks around the lowest and the highest triangle, up to the contours at 1/4 and 3/4.
+/// Disks around the lowest and the highest triangle, up to the contours at `share` from either end.
 ///
 /// Each cap grows triangle by triangle and stays a disk; the complement of a disk in a sphere is a
 /// disk, and two disks without a common vertex leave an annulus. So no repair is needed.
 fn automatic_caps(
     triangles: &TriangleComplex,
     field: &[f64],
+    share: f64,
     source: Option<Vec<usize>>,
     sink: Option<Vec<usize>>,
 ) -> Result<[Vec<usize>; 2], RegionError> {
@@ -240,18 +242,19 @@ fn automatic_caps(
         (Some(_), _) => (0, seed(&falling, &taken)?),
         (_, Some(_)) => (seed(field, &taken)?, 0),
     };
-    let source = source.unwrap_or_else(|| grow_disk(triangles, &adjacency, field, first_seed, &taken));
+    let source = source.unwrap_or_else(|| grow_disk(triangles, &adjacency, field, share, first_seed, &taken));
     taken.fill(false);
     occupy(&mut taken, &source);
-    let sink = sink.unwrap_or_else(|| grow_disk(triangles, &adjacency, &falling, second_seed, &taken));
+    let sink = sink.unwrap_or_else(|| grow_disk(triangles, &adjacency, &falling, share, second_seed, &taken));
     Ok([source, sink])
 }
 
-/// A disk of triangles that grows from `seed` by ascending value up to 1/4 and avoids taken vertices.
+/// A disk of triangles that grows from `seed` by ascending value up to `share` and avoids taken vertices.
 fn grow_disk(
     triangles: &TriangleComplex,
     adjacency: &Adjacency<3>,
     value: &[f64],
+    share: f64,
     seed: usize,
     taken: &[bool],
 ) -> Vec<usize> {
@@ -277,8 +280,8 @@ fn grow_disk(
             _ => false,
         };
         // At least two triangles, so that a boundary of four corners can be made.
-        let notch = shared.len() == 2 && value[t] <= 0.3;
-        let wanted = value[t] <= 0.25 || notch || disk.len() < 2;
+        let notch = shared.len() == 2 && value[t] <= 1.2 * share;
+        let wanted = value[t] <= share || notch || disk.len() < 2;
         if inside[t] || !stays_disk || !wanted || corners.iter().any(|v| taken[v.index()]) {
             continue;
         }

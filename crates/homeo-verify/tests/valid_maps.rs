@@ -1,0 +1,16 @@
+//! Hand-made maps of every kind are certified.
+
+mod support;
+
+use homeo_verify::{Verdict, verify_bytes};
+use support::build::all_maps;
+
+#[test]
+fn every_kind_of_map_is_certified() {
+    for (name, map) in all_maps() {
+        match verify_bytes(&map.bytes()) {
+            Ok(Verdict::Certified(claim)) => assert_eq!(claim.target, map.text("target"), "{name}"),
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! Documents whose Rust code is compiled and run with the documentation tests.
+
+#[doc = include_str!("../../../README.md")]
+mod readme {}
+
+#[doc = include_str!("../../../CONTRIBUTING.md")]
+mod contributing {}
+
+#[doc = include_str!("../../../docs/certificate-format-v1.md")]
+mod certificate_format {}
+
+#[doc = include_str!("../../../docs/methods/foliation.md")]
+mod methods_foliation {}
+
+#[doc = include_str!("../../../docs/theory/balls.md")]
+mod theory_balls {}
+
+#[doc = include_str!("../../../docs/testing.md")]
+mod testing {}
