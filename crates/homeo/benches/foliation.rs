@@ -24,7 +24,6 @@ fn main() {
         words.iter().any(|w| w == name) || !words.iter().any(|w| choices.contains(&w.as_str()))
     };
     println!("threads {}", rayon::current_num_threads());
-    memory_floor();
     let targets: Vec<Target> =
         [Target::Cube, Target::Ball].into_iter().filter(|t| is_asked(&["cube", "ball"], t.name())).collect();
     println!("{}", HEADINGS.map(|(name, width)| format!("{name:>width$}")).join(" "));
@@ -32,7 +31,7 @@ fn main() {
         let file = homeo_core::io::read_mesh(path.as_ref()).expect("a readable mesh");
         let source = mesh(file.positions, &file.tetrahedra);
         targets.iter().for_each(|&target| measure("file", &source, target));
-        return;
+        return memory_floor();
     }
     let mut sizes = vec![("1k", 6), ("10k", 12), ("100k", 26), ("1m", 55)];
     if words.iter().any(|w| w == "5m") {
@@ -44,6 +43,7 @@ fn main() {
             targets.iter().for_each(|&target| measure(&format!("{shape} {size}"), &source, target));
         }
     }
+    memory_floor();
 }
 
 const SHAPES: [&str; 3] = ["jittered", "bumpy", "shuffled"];
