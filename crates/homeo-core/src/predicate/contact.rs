@@ -29,6 +29,14 @@ fn flat(point: Point, [u, v]: [usize; 2]) -> [f64; 2] {
 
 /// Axes of a projection under which `a b c` keeps a positive or negative area; `None` when the
 /// three points are collinear. It is then one-to-one on the plane of the triangle.
+///
+/// ```
+/// use homeo_core::predicate::faithful_projection;
+/// // In the plane x = 0, the first two coordinates do not tell.
+/// let corners = [[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// assert_eq!(faithful_projection(corners[0], corners[1], corners[2]), Some([1, 2]));
+/// assert_eq!(faithful_projection(corners[0], corners[1], corners[1]), None);
+/// ```
 #[inline]
 pub fn faithful_projection(a: Point, b: Point, c: Point) -> Option<[usize; 2]> {
     PROJECTIONS.into_iter().find(|&axes| orient2d(flat(a, axes), flat(b, axes), flat(c, axes)) != Sign::Zero)
@@ -45,8 +53,18 @@ pub fn faithful_projection(a: Point, b: Point, c: Point) -> Option<[usize; 2]> {
 /// assert!(!segment_meets_triangle([[0.75, 0.75, -1.0], [0.75, 0.75, 1.0]], triangle));
 /// ```
 pub fn segment_meets_triangle([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
+    // Saves exact signs among neighbours in one plane, where they are slow.
+    if !boxes_meet([p, q], [a, b, c]) {
+        return false;
+    }
     let sides = [orient3d(a, b, c, p), orient3d(a, b, c, q)];
     segment_at_sides_meets([p, q], sides, [a, b, c])
+}
+
+/// Whether the bounding boxes of a segment and of a triangle share a point.
+#[inline]
+fn boxes_meet([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
+    (0..3).all(|i| p[i].min(q[i]) <= a[i].max(b[i]).max(c[i]) && a[i].min(b[i]).min(c[i]) <= p[i].max(q[i]))
 }
 
 /// Same, when the sides of the triangle's plane on which the ends lie are already known.
@@ -86,6 +104,13 @@ fn flat_segments_meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
 }
 
 /// Whether two closed segments in space share a point; both may be degenerate.
+///
+/// ```
+/// use homeo_core::predicate::segments_meet;
+/// let along = [[0.0; 3], [3.0, 3.0, 3.0]];
+/// assert!(segments_meet(along, [[1.0, 1.0, 1.0], [1.0, 1.0, 9.0]]));
+/// assert!(!segments_meet(along, [[1.0, 1.0, 2.0], [1.0, 1.0, 9.0]]));
+/// ```
 pub fn segments_meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     if orient3d(a, b, c, d) != Sign::Zero {
         return false;
@@ -96,6 +121,40 @@ pub fn segments_meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
         Some(axes) => flat_segments_meet([flat(a, axes), flat(b, axes)], [flat(c, axes), flat(d, axes)]),
         None => (0..3).all(|i| a[i].min(b[i]) <= c[i].max(d[i]) && c[i].min(d[i]) <= a[i].max(b[i])),
     }
+}
+
+/// Whether `d` may lie in the plane of `a b c`; decided in floating point, erring towards yes.
+#[inline]
+fn may_be_coplanar(a: Point, b: Point, c: Point, d: Point) -> bool {
+    let [x, y, z] = [a, b, c].map(|p| [p[0] - d[0], p[1] - d[1], p[2] - d[2]]);
+    let (mut determinant, mut magnitude) = (0.0, 0.0);
+    for [i, j, k] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+        let (p, q) = (y[i] * z[j], y[j] * z[i]);
+        determinant += x[k] * (p - q);
+        magnitude += x[k].abs() * (p.abs() + q.abs());
+    }
+    // Above Shewchuk's bound 7.8e-16; a wrong answer costs time, nothing else.
+    determinant.abs() <= 1e-15 * magnitude
+}
+
+/// The projection along the longest component of a normal, as good as floating point finds it.
+#[inline]
+fn likely_projection([a, b, c]: [Point; 3]) -> [usize; 2] {
+    let area = |[u, v]: [usize; 2]| ((b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u])).abs();
+    let best = |x, y| if area(y) > area(x) { y } else { x };
+    PROJECTIONS.into_iter().reduce(best).unwrap_or([0, 1])
+}
+
+/// Whether some line along one of the `edges` of the triangle keeps `others` strictly off it, on the
+/// far side. An edge is given by the number of the corner opposite to it.
+fn is_cut_off(triangle: [[f64; 2]; 3], edges: &[usize], others: &[[f64; 2]]) -> bool {
+    let [a, b, c] = triangle;
+    let side = orient2d(a, b, c);
+    side != Sign::Zero
+        && edges.iter().any(|&i| {
+            let [p, q] = [triangle[(i + 1) % 3], triangle[(i + 2) % 3]];
+            others.iter().all(|&other| opposite(side, orient2d(p, q, other)))
+        })
 }
 
 /// Whether two closed triangles share a point; both may be degenerate.
@@ -113,6 +172,14 @@ pub fn segments_meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
 /// assert!(!triangles_meet(floor, standing.map(|[x, y, z]| [x + 0.001, y, z])));
 /// ```
 pub fn triangles_meet(first: [Point; 3], second: [Point; 3]) -> bool {
+    // In one plane, signs in space are slow; there a line that separates the two is found sooner.
+    if may_be_coplanar(first[0], first[1], first[2], second[0]) {
+        let axes = likely_projection(first);
+        let [p, q] = [first, second].map(|t| t.map(|point| flat(point, axes)));
+        if is_cut_off(p, &[0, 1, 2], &q) || is_cut_off(q, &[0, 1, 2], &p) {
+            return false;
+        }
+    }
     let sides = |[a, b, c]: [Point; 3], other: [Point; 3]| other.map(|p| orient3d(a, b, c, p));
     let apart = |s: [Sign; 3]| s[0] != Sign::Zero && s[0] == s[1] && s[1] == s[2];
     let second_sides = sides(first, second);
@@ -140,7 +207,24 @@ pub fn triangles_meet(first: [Point; 3], second: [Point; 3]) -> bool {
 /// Their common part is convex and holds the apex. If it holds another point, the ray from the apex
 /// through it leaves one of the triangles first, across the edge opposite the apex: hence the test
 /// of these two edges decides.
+///
+/// ```
+/// use homeo_core::predicate::triangles_meet_beyond_vertex;
+/// let (apex, first) = ([0.0; 3], [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
+/// assert!(triangles_meet_beyond_vertex(apex, first, [[1.0, 1.0, 1.0], [1.0, 1.0, -1.0]]));
+/// assert!(!triangles_meet_beyond_vertex(apex, first, [[-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0]]));
+/// ```
 pub fn triangles_meet_beyond_vertex(apex: Point, first: [Point; 2], second: [Point; 2]) -> bool {
+    // As in `triangles_meet`; a line through the apex separates, too, as it meets the other triangle
+    // in the apex alone.
+    if may_be_coplanar(apex, first[0], first[1], second[0]) {
+        let triangles = [[apex, first[0], first[1]], [apex, second[0], second[1]]];
+        let axes = likely_projection(triangles[0]);
+        let [p, q] = triangles.map(|t| t.map(|point| flat(point, axes)));
+        if is_cut_off(p, &[1, 2], &q[1..]) || is_cut_off(q, &[1, 2], &p[1..]) {
+            return false;
+        }
+    }
     segment_meets_triangle(first, [apex, second[0], second[1]])
         || segment_meets_triangle(second, [apex, first[0], first[1]])
 }
@@ -151,6 +235,13 @@ pub fn triangles_meet_beyond_vertex(apex: Point, first: [Point; 2], second: [Poi
 /// Neither triangle is degenerate.
 ///
 /// They do if and only if they lie in one plane on the same side of the edge.
+///
+/// ```
+/// use homeo_core::predicate::triangles_meet_beyond_edge;
+/// let edge = [[0.0; 3], [1.0, 0.0, 0.0]];
+/// assert!(triangles_meet_beyond_edge(edge, [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]), "folded flat");
+/// assert!(!triangles_meet_beyond_edge(edge, [0.0, 1.0, 0.0], [1.0, -1.0, 0.0]));
+/// ```
 pub fn triangles_meet_beyond_edge([u, v]: [Point; 2], first: Point, second: Point) -> bool {
     if orient3d(u, v, first, second) != Sign::Zero {
         return false;
