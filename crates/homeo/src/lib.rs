@@ -5,6 +5,7 @@
 //! written with its certificate ([`certificate`]) and shown ([`export`]).
 //! What is proved about a map is re-established by the separate checker `homeo-verify`.
 
+pub mod certificate;
 pub mod construct;
 pub mod input;
 pub mod linear;

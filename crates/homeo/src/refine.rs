@@ -151,6 +151,48 @@ impl<const K: usize> RefinedMesh<K> {
         }
     }
 
+    /// A refined mesh from its data, as a map file holds them.
+    ///
+    /// # Errors
+    /// A sentence, when the data do not fit together: children of a source cell follow one another,
+    /// their vertices lie in it, and they are not flat.
+    pub fn from_parts(
+        source: &SourceMesh<K>,
+        complex: SimplicialComplex<K>,
+        added: Vec<Carrier<K>>,
+        parents: Vec<CellId>,
+    ) -> Result<Self, String> {
+        let source_vertex_count = source.positions().len();
+        let source_cells = source.complex().cells();
+        if complex.vertex_count() != source_vertex_count + added.len() || complex.cell_count() != parents.len() {
+            return Err("each added vertex needs a carrier and each cell a parent".to_owned());
+        }
+        for (row, carrier) in added.iter().enumerate() {
+            let weights_fit = carrier.weights.iter().all(|w| (0..=LARGEST_WEIGHT).contains(w)) && carrier.total() > 0;
+            if !weights_fit || carrier.vertices.iter().any(|v| v.index() >= source_vertex_count) {
+                return Err(format!("carrier {row} is no point of the source mesh"));
+            }
+        }
+        let mut positions = source.positions().to_vec();
+        positions.extend(added.iter().map(|carrier| carrier.position(source.positions())));
+        let mesh = Self { complex, positions, source_vertex_count, added, parents };
+        let ascending = mesh.parents.windows(2).all(|w| w[0] <= w[1] && w[1].index() <= w[0].index() + 1);
+        let ends = (mesh.parents.first().map(|p| p.index()), mesh.parents.last().map(|p| p.index() + 1));
+        if !ascending || ends != (Some(0), Some(source_cells.len())) {
+            return Err(
+                "the children of each source cell must follow one another, in the order of the source".to_owned()
+            );
+        }
+        for (cell, corners) in mesh.complex.cells().iter().enumerate() {
+            let parent = source_cells[mesh.parents[cell].index()];
+            let inside = |v: &VertexId| mesh.carrier(*v).terms().all(|(vertex, _)| parent.contains(&vertex));
+            if !corners.iter().all(inside) {
+                return Err(format!("cell {cell} does not lie in its parent"));
+            }
+        }
+        Ok(mesh)
+    }
+
     /// The cells.
     pub fn complex(&self) -> &SimplicialComplex<K> {
         &self.complex

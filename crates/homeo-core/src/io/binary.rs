@@ -224,10 +224,6 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    pub fn u8(&mut self, what: &str) -> Outcome<u8> {
-        Ok(self.chunk::<1>(what)?[0])
-    }
-
     pub fn u32(&mut self, what: &str) -> Outcome<u32> {
         let chunk = self.chunk(what)?;
         Ok(if self.order == Order::Little { u32::from_le_bytes(chunk) } else { u32::from_be_bytes(chunk) })

@@ -34,10 +34,17 @@ mod vtk;
 mod vtk_cells;
 mod vtk_data;
 mod vtk_write;
+mod vtu;
+mod vtu_blocks;
+mod vtu_write;
 mod write;
+mod xml;
 
 pub use error::{Place, ReadError, WriteError};
 pub use mesh_file::{Attribute, Element, MeshFile, PhysicalName, PolygonList, Values};
 pub use read::{Format, read_mesh, read_mesh_bytes};
 pub use triangulate::Triangulated;
+#[cfg(test)]
+mod tests;
+
 pub use write::{Encoding, WriteOptions, WriteReport, write_mesh, write_mesh_to};

@@ -17,7 +17,8 @@ use super::scan::{Scanner, parse_f64, show};
 
 pub(super) fn read(bytes: &[u8]) -> Outcome<MeshFile> {
     let mut numbers = Numbers::new(bytes);
-    let mut reader = Reader { version: read_header(&mut numbers)?, ..Reader::default() };
+    let version = read_header(&mut numbers)?;
+    let mut reader = Reader { version, data_budget: bytes.len(), ..Reader::default() };
     while let Some(section) = numbers.scanner.token() {
         let Some(name) = section.strip_prefix(b"$") else {
             let message = format!("expected a section such as $Nodes, found \"{}\"", show(section));
@@ -83,6 +84,8 @@ pub(super) struct Reader {
     /// Element numbers in the file, for `$ElementData`.
     pub polygon_numbers: Vec<u64>,
     pub tetrahedron_numbers: Vec<u64>,
+    /// How many entries the attributes from data sections may still have.
+    pub data_budget: usize,
     points: usize,
     lines: usize,
     several_physical: usize,

@@ -27,10 +27,11 @@ pub(super) fn read_data(reader: &mut Reader, numbers: &mut Numbers<'_>, element:
         Element::Vertex => mesh.positions.len(),
         _ => mesh.polygons.len() + mesh.tetrahedra.len(),
     };
-    if count < elements / 8 {
-        reader.mesh.losses.push(format!("the data \"{name}\" was left out: it covers {count} of {elements} elements"));
+    let Some(left) = reader.data_budget.checked_sub(elements * components) else {
+        reader.mesh.losses.push(format!("the data \"{name}\" was left out: there is too much data of few elements"));
         return Ok(());
-    }
+    };
+    reader.data_budget = left;
     let (polygons, tetrahedra) = (&reader.polygon_numbers, &reader.tetrahedron_numbers);
     let gather = |element: Element, of: &mut dyn Iterator<Item = u64>| {
         let mut column = Vec::with_capacity(mesh.count(element) * components);

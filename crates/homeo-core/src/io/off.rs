@@ -30,7 +30,7 @@ pub(super) fn read(bytes: &[u8]) -> Outcome<MeshFile> {
     let vertex_count = scanner.unsigned("the number of vertices")?;
     let polygon_count = scanner.unsigned("the number of faces")?;
     // The number of edges is not needed and sometimes missing.
-    while scanner.token_in_line().is_some() {}
+    scanner.token_in_line();
     let vertex_count = scanner.claim(vertex_count, 6, "vertices")?;
     let mut mesh = MeshFile { space: 3, ..MeshFile::default() };
     read_vertices(&mut scanner, &mut mesh, vertex_count, layout)?;
@@ -191,7 +191,7 @@ pub(super) fn write(out: &mut dyn Write, parcel: &mut Parcel<'_>, options: &Writ
         for vertex in polygon {
             write!(out, " {vertex}")?;
         }
-        for attribute in face_color {
+        if let Some(attribute) = face_color {
             for component in 0..attribute.components {
                 out.write_all(b" ")?;
                 write_entry(out, &attribute.values, index * attribute.components + component)?;

@@ -154,7 +154,7 @@ fn read_format(format: Format, bytes: &[u8]) -> Outcome<MeshFile> {
         Format::Medit => super::medit::read(bytes),
         Format::Msh => super::msh::read(bytes),
         Format::Vtk => super::vtk::read(bytes),
-        Format::Vtu => todo!("vtu"),
+        Format::Vtu => super::vtu::read(bytes),
         Format::Ply => super::ply::read(bytes),
         Format::Json => super::facets::read(bytes),
     }?;

@@ -213,7 +213,7 @@ impl<'a> Scanner<'a> {
     #[cold]
     pub fn end_fault(&self, what: &str) -> Fault {
         let message = format!("the file ends where {what} should be; it may be cut short");
-        Fault::at_line_of(self.bytes, self.bytes.len(), "unexpected-end", message)
+        Fault::at_line_of(self.bytes, self.bytes.trim_ascii_end().len(), "unexpected-end", message)
     }
 }
 

@@ -123,7 +123,7 @@ pub fn write_mesh_to(
         Format::Medit => super::medit_write::write(out, &mut parcel, options)?,
         Format::Msh => super::msh_write::write(out, &mut parcel, options)?,
         Format::Vtk => super::vtk_write::write(out, &mut parcel, options)?,
-        Format::Vtu => todo!("vtu"),
+        Format::Vtu => super::vtu_write::write(out, &mut parcel, options)?,
         Format::Ply => super::ply_write::write(out, &mut parcel, options)?,
         Format::Json => super::facets::write(out, &mut parcel, options)?,
     }

@@ -1,0 +1,67 @@
+//! Map files: writing a map with everything that its proof needs, and reading it back.
+//!
+//! The format is documented in `docs/certificate-format-v1.md`. Nothing is checked here beyond what
+//! evaluation needs to be safe; the proof is re-established by the separate program `homeo-verify`.
+
+mod npy;
+mod read;
+mod write;
+
+pub use read::{MapFileError, read_map};
+pub use write::{content_sha256, write_map};
+
+use homeo_core::number::Rational;
+
+use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, Target};
+
+/// A foliation map of a surface or of a volume.
+#[derive(Debug)]
+pub enum FoliationMap {
+    /// Of a disk, onto square or disk.
+    Surface(Foliation<3>),
+    /// Of a ball, onto cube or ball.
+    Volume(Foliation<4>),
+}
+
+/// Where a map comes from; no claim rests on it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Provenance {
+    /// File name of the source mesh.
+    pub source_name: String,
+    /// Program and version.
+    pub program: String,
+    /// Options of the construction.
+    pub options: serde_json::Value,
+}
+
+macro_rules! either {
+    ($map:expr, $inner:ident => $body:expr) => {
+        match $map {
+            FoliationMap::Surface($inner) => $body,
+            FoliationMap::Volume($inner) => $body,
+        }
+    };
+}
+pub(crate) use either;
+
+impl Bijection for FoliationMap {
+    fn target(&self) -> Target {
+        either!(self, map => map.target())
+    }
+
+    fn forward(&self, point: [f64; 3]) -> Result<Enclosed, EvaluationError> {
+        either!(self, map => map.forward(point))
+    }
+
+    fn inverse(&self, point: [f64; 3]) -> Result<Enclosed, EvaluationError> {
+        either!(self, map => map.inverse(point))
+    }
+
+    fn forward_exact(&self, point: &[Rational; 3]) -> Result<[Rational; 3], EvaluationError> {
+        either!(self, map => map.forward_exact(point))
+    }
+
+    fn inverse_exact(&self, point: &[Rational; 3]) -> Result<[Rational; 3], EvaluationError> {
+        either!(self, map => map.inverse_exact(point))
+    }
+}

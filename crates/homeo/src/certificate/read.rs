@@ -1,0 +1,297 @@
+//! Reading a map file, far enough to evaluate the map safely.
+//!
+//! Everything that evaluation indexes with is checked here, so that a hostile file gives an error
+//! and neither a panic nor an endless leaf. Whether the map is a homeomorphism is the checker's business.
+
+use std::io::{Cursor, Read};
+
+use homeo_core::mesh::{Adjacency, CellId, SimplicialComplex, VertexId};
+use serde_json::Value;
+use zip::{CompressionMethod, ZipArchive};
+
+use super::FoliationMap;
+use super::npy::decode;
+use crate::input::SourceMesh;
+use crate::map::{Centre, Foliation, FoliationParts, Section, Target};
+use crate::refine::{Carrier, RefinedMesh};
+
+/// Why a file is no map that can be evaluated.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MapFileError {
+    /// No zip archive of stored entries.
+    #[error("not a map file: {0}")]
+    Archive(String),
+    /// The manifest is missing, broken, or of a version or kind that this program does not know.
+    #[error("manifest.json: {0}")]
+    Manifest(String),
+    /// An array is missing or has another type or shape.
+    #[error("array {name} {what}")]
+    Array {
+        /// Its name.
+        name: String,
+        /// What is wrong.
+        what: String,
+    },
+    /// The arrays do not fit together.
+    #[error("the map file is inconsistent: {0}")]
+    Inconsistent(String),
+}
+
+/// Reads a map from the bytes of its file.
+///
+/// # Errors
+/// [`MapFileError`]; memory stays within a small multiple of the file's size.
+pub fn read_map(bytes: &[u8]) -> Result<FoliationMap, MapFileError> {
+    let mut file = File::open(bytes)?;
+    let manifest = file.manifest()?;
+    let text = |key: &str| manifest.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
+    let number = |key: &str| manifest.get(key).and_then(Value::as_u64);
+    if text("format") != "homeo" || number("version") != Some(1) {
+        return Err(MapFileError::Manifest("this program reads format `homeo`, version 1".to_owned()));
+    }
+    if text("kind") != "foliation" {
+        return Err(MapFileError::Manifest(format!("maps of kind `{}` are not known", text("kind"))));
+    }
+    let target: Target = text("target").parse().map_err(|e| MapFileError::Manifest(format!("target: {e}")))?;
+    if number("dimension") != Some(target.dimension() as u64) {
+        return Err(MapFileError::Manifest(format!("a {target} has dimension {}", target.dimension())));
+    }
+    match target.dimension() {
+        2 => Ok(FoliationMap::Surface(file.foliation::<3>(target, &manifest)?)),
+        _ => Ok(FoliationMap::Volume(file.foliation::<4>(target, &manifest)?)),
+    }
+}
+
+struct File<'b> {
+    zip: ZipArchive<Cursor<&'b [u8]>>,
+}
+
+fn inconsistent<T>(what: impl Into<String>) -> Result<T, MapFileError> {
+    Err(MapFileError::Inconsistent(what.into()))
+}
+
+impl<'b> File<'b> {
+    fn open(bytes: &'b [u8]) -> Result<Self, MapFileError> {
+        let zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| MapFileError::Archive(e.to_string()))?;
+        Ok(Self { zip })
+    }
+
+    fn entry(&mut self, name: &str) -> Result<Option<Vec<u8>>, MapFileError> {
+        let Ok(entry) = self.zip.by_name(name) else { return Ok(None) };
+        let error = |what: String| MapFileError::Archive(format!("{name}: {what}"));
+        if entry.compression() != CompressionMethod::Stored {
+            return Err(error("entries must be stored, not compressed".to_owned()));
+        }
+        let mut bytes = Vec::new();
+        // A stored entry cannot be longer than the archive, whatever its header says.
+        let mut limited = entry.take(u64::from(u32::MAX) * 4);
+        limited.read_to_end(&mut bytes).map_err(|e| error(e.to_string()))?;
+        Ok(Some(bytes))
+    }
+
+    fn manifest(&mut self) -> Result<Value, MapFileError> {
+        let bytes = self.entry("manifest.json")?.ok_or_else(|| MapFileError::Manifest("is missing".to_owned()))?;
+        serde_json::from_slice(&bytes).map_err(|e| MapFileError::Manifest(e.to_string()))
+    }
+
+    fn has(&mut self, name: &str) -> bool {
+        self.zip.by_name(&format!("{name}.npy")).is_ok()
+    }
+
+    fn array<T: super::npy::Element>(&mut self, name: &str, columns: usize) -> Result<Vec<T>, MapFileError> {
+        let bytes = self.entry(&format!("{name}.npy"))?;
+        let missing = || MapFileError::Array { name: name.to_owned(), what: "is missing".to_owned() };
+        decode(name, &bytes.ok_or_else(missing)?, columns)
+    }
+
+    fn rows<T: super::npy::Element + Default, const N: usize>(
+        &mut self,
+        name: &str,
+    ) -> Result<Vec<[T; N]>, MapFileError> {
+        let flat = self.array::<T>(name, N)?;
+        Ok(flat.chunks_exact(N).map(|row| std::array::from_fn(|i| row[i])).collect())
+    }
+
+    fn cells<const K: usize>(&mut self, name: &str, vertices: usize) -> Result<SimplicialComplex<K>, MapFileError> {
+        let cells = self.rows::<u32, K>(name)?;
+        if cells.len() >= 1 << 30 {
+            return inconsistent("more cells than this program can number");
+        }
+        if let Some(cell) = cells.iter().position(|cell| (0..K).any(|i| cell[..i].contains(&cell[i]))) {
+            return inconsistent(format!("cell {cell} of {name} repeats a vertex"));
+        }
+        SimplicialComplex::from_indices(vertices, &cells).map_err(|e| MapFileError::Inconsistent(e.to_string()))
+    }
+
+    fn foliation<const K: usize>(&mut self, target: Target, manifest: &Value) -> Result<Foliation<K>, MapFileError> {
+        let positions = self.rows::<f64, 3>("source_positions")?;
+        if let Some(row) = positions.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+            return inconsistent(format!("source vertex {row} is not finite"));
+        }
+        let complex = self.cells::<K>("source_cells", positions.len())?;
+        let source = SourceMesh::new(positions, complex);
+        let mesh = if self.has("cells") { self.refined(&source)? } else { RefinedMesh::unrefined(&source) };
+        let adjacency = mesh.complex().adjacency().map_err(|e| MapFileError::Inconsistent(e.to_string()))?;
+        let count = mesh.complex().cell_count();
+        let directions = self.rows::<i8, K>("directions")?;
+        let lengths = self.array::<u32>("lengths", 1)?;
+        if directions.len() != count || lengths.len() != count {
+            return inconsistent(format!("{count} cells need as many directions and lengths"));
+        }
+        let centre = centre(target, manifest, count)?;
+        let section = self.section(target, mesh.complex().vertex_count())?;
+        let length_unit = manifest.get("length_unit").and_then(Value::as_f64).unwrap_or(1.0);
+        let parts = FoliationParts { target, mesh, directions, lengths, length_unit, centre, section };
+        check_directions(&parts, &adjacency)?;
+        check_section(&parts, &adjacency)?;
+        Ok(Foliation::from_parts(source, adjacency, parts))
+    }
+
+    fn refined<const K: usize>(&mut self, source: &SourceMesh<K>) -> Result<RefinedMesh<K>, MapFileError> {
+        let vertices = self.rows::<u32, K>("carrier_vertices")?;
+        let weights = self.rows::<i64, K>("carrier_weights")?;
+        if vertices.len() != weights.len() {
+            return inconsistent("as many carrier weights as carrier vertices are needed");
+        }
+        let added: Vec<Carrier<K>> = vertices
+            .iter()
+            .zip(&weights)
+            .map(|(v, &weights)| Carrier { vertices: v.map(VertexId::from), weights })
+            .collect();
+        let complex = self.cells::<K>("cells", source.positions().len() + added.len())?;
+        let parents: Vec<CellId> = self.array::<u32>("parents", 1)?.into_iter().map(CellId::from).collect();
+        RefinedMesh::from_parts(source, complex, added, parents).map_err(MapFileError::Inconsistent)
+    }
+
+    fn section(&mut self, target: Target, vertex_count: usize) -> Result<Section, MapFileError> {
+        if target == Target::Ball {
+            return Ok(Section::Centre);
+        }
+        let vertices: Vec<VertexId> =
+            self.array::<u32>("section_vertices", 1)?.into_iter().map(VertexId::from).collect();
+        if vertices.iter().any(|v| v.index() >= vertex_count) {
+            return inconsistent("the section names a vertex that does not exist");
+        }
+        if target == Target::Cube {
+            let coordinates = self.rows::<f64, 2>("section_coordinates")?;
+            let finite = coordinates.iter().flatten().all(|x| (0.0..=1.0).contains(x));
+            return if coordinates.len() == vertices.len() && finite {
+                Ok(Section::Square { vertices, coordinates })
+            } else {
+                inconsistent("the section needs one point of the unit square for each of its vertices")
+            };
+        }
+        let parameters = self.array::<f64>("section_coordinates", 1)?;
+        let increasing = parameters.windows(2).all(|w| w[0] < w[1]) && parameters.first() == Some(&0.0);
+        if parameters.len() != vertices.len() || parameters.len() < 2 || !increasing {
+            return inconsistent("the section needs one parameter for each of its vertices, increasing from 0");
+        }
+        Ok(if target == Target::Square {
+            Section::Arc { vertices, parameters }
+        } else {
+            Section::Loop { vertices, parameters }
+        })
+    }
+}
+
+fn centre(target: Target, manifest: &Value, count: usize) -> Result<Option<Centre>, MapFileError> {
+    let value = manifest.get("centre").filter(|value| !value.is_null());
+    match (target.is_radial(), value) {
+        (false, None) => Ok(None),
+        (true, Some(value)) => {
+            let number = |key: &str| value.get(key).and_then(Value::as_u64);
+            match (number("cell"), number("length").map(u32::try_from)) {
+                (Some(cell), Some(Ok(length))) if cell < count as u64 && length > 0 => {
+                    Ok(Some(Centre { cell: CellId::new(cell as usize), length }))
+                }
+                _ => inconsistent("the centre needs a cell that exists and a positive length"),
+            }
+        }
+        _ => {
+            inconsistent(format!("a map onto a {target} {} a centre", if value.is_some() { "has no" } else { "needs" }))
+        }
+    }
+}
+
+/// Signs agree across facets and flow in no cycle: leaves end.
+fn check_directions<const K: usize>(parts: &FoliationParts<K>, adjacency: &Adjacency<K>) -> Result<(), MapFileError> {
+    let centre = parts.centre.map(|c| c.cell);
+    let complex = parts.mesh.complex();
+    let mut waiting = vec![0u8; complex.cell_count()];
+    for cell in complex.cell_ids().filter(|&cell| centre != Some(cell)) {
+        let direction = parts.directions[cell.index()];
+        let both = direction.iter().any(|&d| d > 0) && direction.iter().any(|&d| d < 0);
+        if !both || direction.contains(&i8::MIN) || direction.iter().map(|&d| i32::from(d)).sum::<i32>() != 0 {
+            return inconsistent(format!("the direction of cell {cell} does not add up to zero with both signs"));
+        }
+        for i in 0..K {
+            let far = adjacency.across(cell, i);
+            if far.is_none() || centre == Some(far.cell()) {
+                continue;
+            }
+            let there = parts.directions[far.cell().index()][far.opposite()];
+            if direction[i].signum() != -there.signum() || direction[i] == 0 {
+                return inconsistent(format!("directions of cells {cell} and {} disagree", far.cell()));
+            }
+            waiting[cell.index()] += u8::from(direction[i] > 0);
+        }
+    }
+    let mut ready: Vec<CellId> = complex.cell_ids().filter(|&c| waiting[c.index()] == 0 && centre != Some(c)).collect();
+    let mut done = usize::from(centre.is_some());
+    while let Some(cell) = ready.pop() {
+        done += 1;
+        for i in (0..K).filter(|&i| parts.directions[cell.index()][i] < 0) {
+            let far = adjacency.across(cell, i);
+            if far.is_some() && centre != Some(far.cell()) {
+                waiting[far.cell().index()] -= 1;
+                if waiting[far.cell().index()] == 0 {
+                    ready.push(far.cell());
+                }
+            }
+        }
+    }
+    if done == complex.cell_count() { Ok(()) } else { inconsistent("leaves run in circles") }
+}
+
+/// Leaves begin and end where the section and the centre say.
+fn check_section<const K: usize>(parts: &FoliationParts<K>, adjacency: &Adjacency<K>) -> Result<(), MapFileError> {
+    let complex = parts.mesh.complex();
+    let mut known = vec![false; complex.vertex_count()];
+    let mut edges = 0;
+    if let Section::Arc { vertices, .. } | Section::Loop { vertices, .. } | Section::Square { vertices, .. } =
+        &parts.section
+    {
+        vertices.iter().for_each(|v| known[v.index()] = true);
+        edges = vertices.len() - usize::from(matches!(parts.section, Section::Arc { .. }));
+    }
+    let mut sources = 0;
+    for facet in adjacency.boundary_facets() {
+        if parts.centre.is_some_and(|c| c.cell == facet.cell()) {
+            return inconsistent("the centre lies on the boundary");
+        }
+        let sign = parts.directions[facet.cell().index()][facet.opposite()].signum();
+        let expected = match parts.target {
+            Target::Disk => sign > 0,
+            Target::Ball => sign < 0,
+            _ => true,
+        };
+        let section_known =
+            sign <= 0 || complex.facet_vertices(facet.cell(), facet.opposite()).all(|v| known[v.index()]);
+        if !expected || (parts.target != Target::Ball && !section_known) {
+            return inconsistent(format!("leaves begin or end wrongly at boundary facet {facet:?}"));
+        }
+        sources += usize::from(sign > 0);
+    }
+    if matches!(parts.section, Section::Arc { .. } | Section::Loop { .. }) && sources != edges {
+        return inconsistent("the section has another number of edges than the source region");
+    }
+    let Some(centre) = parts.centre else { return Ok(()) };
+    for i in 0..K {
+        let far = adjacency.across(centre.cell, i);
+        let inward = far.is_some() && parts.directions[far.cell().index()][far.opposite()] < 0;
+        if inward != (parts.target == Target::Disk) {
+            return inconsistent("leaves do not end at, or begin from, the centre as the target asks");
+        }
+    }
+    Ok(())
+}

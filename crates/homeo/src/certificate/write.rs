@@ -1,0 +1,141 @@
+//! Writing a map file.
+
+use std::io::{self, Seek, Write};
+
+use homeo_core::mesh::VertexId;
+use serde_json::json;
+use sha2::{Digest, Sha256};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+use super::npy::{Element, encode};
+use super::{FoliationMap, Provenance, either};
+use crate::input::SourceMesh;
+use crate::map::{Bijection, Foliation, Section};
+
+/// Writes a map with its certificate. The same map gives the same bytes.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub fn write_map(map: &FoliationMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
+    either!(map, map => write_foliation(map, provenance, out))
+}
+
+/// SHA-256 of the arrays of a source mesh as the map file stores them, in hexadecimal digits.
+pub fn content_sha256<const K: usize>(source: &SourceMesh<K>) -> String {
+    let mut hash = Sha256::new();
+    for count in [source.positions().len(), K, source.complex().cell_count()] {
+        hash.update((count as u64).to_le_bytes());
+    }
+    let mut bytes = Vec::with_capacity(1 << 16);
+    source.positions().chunks(1024).for_each(|rows| {
+        bytes.clear();
+        rows.iter().flatten().for_each(|x| x.put(&mut bytes));
+        hash.update(&bytes);
+    });
+    source.complex().cells().chunks(1024).for_each(|rows| {
+        bytes.clear();
+        rows.iter().flatten().for_each(|v| v.raw().put(&mut bytes));
+        hash.update(&bytes);
+    });
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+struct Archive<'w, W: Write + Seek> {
+    zip: ZipWriter<&'w mut W>,
+}
+
+impl<W: Write + Seek> Archive<'_, W> {
+    fn add(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        self.zip.start_file(name, options).map_err(io::Error::other)?;
+        self.zip.write_all(bytes)
+    }
+
+    fn array<T: Element>(
+        &mut self,
+        name: &str,
+        shape: &[usize],
+        elements: impl ExactSizeIterator<Item = T>,
+    ) -> io::Result<()> {
+        self.add(&format!("{name}.npy"), &encode(shape, elements))
+    }
+}
+
+fn write_foliation<const K: usize>(
+    map: &Foliation<K>,
+    provenance: &Provenance,
+    out: &mut (impl Write + Seek),
+) -> io::Result<()> {
+    let mut archive = Archive { zip: ZipWriter::new(out) };
+    let manifest = serde_json::to_vec_pretty(&manifest(map, provenance)).map_err(io::Error::other)?;
+    archive.add("manifest.json", &manifest)?;
+    let (source, parts) = (map.source(), map.parts());
+    let positions: Vec<f64> = source.positions().iter().flatten().copied().collect();
+    archive.array("source_positions", &[source.positions().len(), 3], positions.into_iter())?;
+    archive.array(
+        "source_cells",
+        &[source.complex().cell_count(), K],
+        numbers(source.complex().cells()).into_iter(),
+    )?;
+    if !parts.mesh.is_unrefined() {
+        write_refinement(map, &mut archive)?;
+    }
+    let count = parts.directions.len();
+    let directions: Vec<i8> = parts.directions.iter().flatten().copied().collect();
+    archive.array("directions", &[count, K], directions.into_iter())?;
+    archive.array("lengths", &[count], parts.lengths.iter().copied())?;
+    let ids = |vertices: &[VertexId]| -> Vec<u32> { vertices.iter().map(|v| v.raw()).collect() };
+    match &parts.section {
+        Section::Arc { vertices, parameters } | Section::Loop { vertices, parameters } => {
+            archive.array("section_vertices", &[vertices.len()], ids(vertices).into_iter())?;
+            archive.array("section_coordinates", &[parameters.len()], parameters.iter().copied())?;
+        }
+        Section::Square { vertices, coordinates } => {
+            let flat: Vec<f64> = coordinates.iter().flatten().copied().collect();
+            archive.array("section_vertices", &[vertices.len()], ids(vertices).into_iter())?;
+            archive.array("section_coordinates", &[coordinates.len(), 2], flat.into_iter())?;
+        }
+        Section::Centre => {}
+    }
+    archive.zip.finish().map_err(io::Error::other)?;
+    Ok(())
+}
+
+fn write_refinement<const K: usize>(
+    map: &Foliation<K>,
+    archive: &mut Archive<'_, impl Write + Seek>,
+) -> io::Result<()> {
+    let mesh = &map.parts().mesh;
+    let carriers: Vec<u32> = mesh.added().iter().flat_map(|c| c.vertices.map(VertexId::raw)).collect();
+    let weights: Vec<i64> = mesh.added().iter().flat_map(|c| c.weights).collect();
+    let shape = [mesh.added().len(), K];
+    archive.array("carrier_vertices", &shape, carriers.into_iter())?;
+    archive.array("carrier_weights", &shape, weights.into_iter())?;
+    archive.array("cells", &[mesh.complex().cell_count(), K], numbers(mesh.complex().cells()).into_iter())?;
+    archive.array("parents", &[mesh.parents().len()], mesh.parents().iter().map(|p| p.raw()))
+}
+
+fn numbers<const K: usize>(cells: &[[VertexId; K]]) -> Vec<u32> {
+    cells.iter().flatten().map(|v| v.raw()).collect()
+}
+
+fn manifest<const K: usize>(map: &Foliation<K>, provenance: &Provenance) -> serde_json::Value {
+    let (source, parts) = (map.source(), map.parts());
+    json!({
+        "format": "homeo",
+        "version": 1,
+        "kind": "foliation",
+        "dimension": K - 1,
+        "target": map.target().name(),
+        "centre": parts.centre.map(|centre| json!({"cell": centre.cell.raw(), "length": centre.length})),
+        "source": {
+            "name": provenance.source_name,
+            "vertices": source.positions().len(),
+            "cells": source.complex().cell_count(),
+            "content_sha256": content_sha256(source),
+        },
+        "length_unit": parts.length_unit,
+        "construction": {"program": provenance.program, "options": provenance.options},
+    })
+}
