@@ -3,9 +3,10 @@
 
 use std::time::Instant;
 
+use homeo::certificate::{FoliationMap, Provenance, read_map, write_map};
 use homeo::construct::foliation::{FoliationParams, build};
 use homeo::input::SourceMesh;
-use homeo::map::{Bijection, Target};
+use homeo::map::{Bijection, Foliation, Target};
 use homeo::progress::Silent;
 use homeo_core::mesh::{SimplicialComplex, VertexId};
 use homeo_core::number::Rational;
@@ -26,7 +27,10 @@ fn main() {
     }
 }
 
-fn try_map<const K: usize>(positions: Vec<[f64; 3]>, cells: &[[u32; K]], target: Target, points: usize) {
+fn try_map<const K: usize>(positions: Vec<[f64; 3]>, cells: &[[u32; K]], target: Target, points: usize)
+where
+    FoliationMap: From<Foliation<K>>,
+{
     let complex = SimplicialComplex::<K>::from_indices(positions.len(), cells).expect("indices");
     let source = SourceMesh::new(positions, complex);
     let clock = Instant::now();
@@ -104,4 +108,12 @@ fn try_map<const K: usize>(positions: Vec<[f64; 3]>, cells: &[[u32; K]], target:
         float_time * 1e9 / cells_crossed as f64,
         trips[trips.len() / 2],
     );
+    if let Ok(path) = std::env::var("OUT") {
+        let mut file = std::io::BufWriter::new(std::fs::File::create(&path).expect("writable"));
+        write_map(&FoliationMap::from(map), &Provenance::default(), &mut file).expect("writable");
+        drop(file);
+        let clock = Instant::now();
+        let again = read_map(&std::fs::read(&path).expect("readable")).expect("a map");
+        println!("read back {:.3}s {}", clock.elapsed().as_secs_f64(), again.target());
+    }
 }

@@ -23,6 +23,18 @@ pub enum FoliationMap {
     Volume(Foliation<4>),
 }
 
+impl From<Foliation<3>> for FoliationMap {
+    fn from(map: Foliation<3>) -> Self {
+        Self::Surface(map)
+    }
+}
+
+impl From<Foliation<4>> for FoliationMap {
+    fn from(map: Foliation<4>) -> Self {
+        Self::Volume(map)
+    }
+}
+
 /// Where a map comes from; no claim rests on it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance {
