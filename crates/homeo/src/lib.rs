@@ -5,8 +5,6 @@
 //! written with its certificate ([`certificate`]) and shown ([`export`]).
 //! What is proved about a map is re-established by the separate checker `homeo-verify`.
 
-//! Library.
-
 pub mod certificate;
 pub mod construct;
 pub mod export;
