@@ -1,1 +1,183 @@
-//! Checker.
+//! The independent checker of homeo's map files.
+//!
+//! It reads a `.homeo` file and re-establishes, from the stored numbers alone and in exact arithmetic, that the map
+//! is a homeomorphism. It shares no code with the constructions. `docs/certificate-format-v1.md` is its
+//! specification; every comment "rule X" refers to it. The order of reading:
+//!
+//! 1. `archive`, `npy`, `manifest`, `map_file`: bytes to arrays, hostile input;
+//! 2. `complex`, `links`, `number`: neighbours, manifolds, exact signs;
+//! 3. `source` (rules S, 8), `subdivision` (R), `foliation` (1-6, 8), `section` (7), `piecewise_linear` (P, 7).
+//!
+//! # Complexity
+//! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file.
+
+mod archive;
+mod complex;
+mod foliation;
+mod links;
+mod manifest;
+mod map_file;
+mod npy;
+mod number;
+mod piecewise_linear;
+mod section;
+mod source;
+mod subdivision;
+mod verdict;
+
+pub use verdict::{Claim, Obstacle, Unreadable, Verdict, Witness};
+
+use manifest::Target;
+use map_file::{MapData, MapFile};
+use std::path::Path;
+use verdict::{Checked, Stop, unreadable};
+
+/// Reads and checks a map file.
+///
+/// # Errors
+/// [`Unreadable`] when the file cannot be read or breaks a container rule.
+///
+/// # Example
+/// ```no_run
+/// let verdict = homeo_verify::verify_file("spot.homeo".as_ref())?;
+/// println!("{verdict:?}");
+/// # Ok::<(), homeo_verify::Unreadable>(())
+/// ```
+pub fn verify_file(path: &Path) -> Result<Verdict, Unreadable> {
+    match std::fs::read(path) {
+        Ok(bytes) => verify_bytes(&bytes),
+        Err(error) => unreadable(format!("{}: {error}", path.display())),
+    }
+}
+
+/// Checks a map file that is already in memory.
+///
+/// # Errors
+/// [`Unreadable`] when the bytes break a container rule.
+///
+/// # Example
+/// ```
+/// assert!(homeo_verify::verify_bytes(&[]).is_err());
+/// ```
+pub fn verify_bytes(bytes: &[u8]) -> Result<Verdict, Unreadable> {
+    let map = MapFile::read(bytes)?;
+    Ok(match check(&map) {
+        Ok(claim) => Verdict::Certified(claim),
+        Err(Stop::Undecided(obstacle)) => Verdict::Undecided(obstacle),
+        Err(Stop::Refuted(mut witness)) => {
+            let places: Option<Vec<_>> = witness.vertices.iter().map(|&v| map.place(v)).collect();
+            witness.points = places.unwrap_or_default();
+            Verdict::Refuted(witness)
+        }
+    })
+}
+
+/// Whether a map is about a given mesh.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SourceMatch {
+    /// Bit for bit the mesh of the map.
+    Same,
+    /// Another mesh; the text says where it first differs.
+    Different(String),
+}
+
+/// Compares the source stored in a map file with a mesh, bit for bit; `cells` lists the cells one after the other.
+///
+/// # Errors
+/// [`Unreadable`] when the bytes break a container rule.
+///
+/// # Example
+/// ```no_run
+/// # let (bytes, positions, cells) = (vec![], vec![[0.0; 3]; 4], vec![0, 1, 2, 3]);
+/// use homeo_verify::{SourceMatch, compare_source};
+/// assert_eq!(compare_source(&bytes, &positions, &cells, 4)?, SourceMatch::Same);
+/// # Ok::<(), homeo_verify::Unreadable>(())
+/// ```
+pub fn compare_source(
+    bytes: &[u8],
+    positions: &[[f64; 3]],
+    cells: &[u32],
+    vertices_per_cell: usize,
+) -> Result<SourceMatch, Unreadable> {
+    let map = MapFile::read(bytes)?;
+    let bits = |points: &[[f64; 3]], v: usize| points[v].map(f64::to_bits);
+    let difference = if vertices_per_cell != map.cell_size() {
+        Some(format!("cells of {} vertices, not {vertices_per_cell}", map.cell_size()))
+    } else if (positions.len(), cells.len()) != (map.positions.len(), map.cells.len()) {
+        let counts = (map.positions.len(), map.cells.len() / vertices_per_cell);
+        Some(format!("{} vertices and {} cells", counts.0, counts.1))
+    } else if let Some(v) = (0..positions.len()).find(|&v| bits(positions, v) != bits(&map.positions, v)) {
+        Some(format!("vertex {v} at {:?}, not {:?}", map.positions[v], positions[v]))
+    } else {
+        let place = (0..cells.len()).find(|&i| cells[i] != map.cells[i]);
+        place.map(|i| format!("another cell {}", i / vertices_per_cell))
+    };
+    Ok(match difference {
+        None => SourceMatch::Same,
+        Some(text) => SourceMatch::Different(format!("the map's source has {text}")),
+    })
+}
+
+/// Applies every rule and puts the claim into words.
+fn check(map: &MapFile) -> Checked<Claim> {
+    let source = source::check_source(map)?;
+    let refined = match &map.refinement {
+        Some(refinement) => Some(subdivision::check_subdivision(map, refinement, &source)?),
+        None => None,
+    };
+    let complex = refined.as_ref().unwrap_or(&source);
+    let mut checked = vec![
+        ("source vertices with finite coordinates (rule S1)", map.positions.len() as u64),
+        ("source cells, oriented and with manifold links (rules S2-S4, 8)", source.count() as u64),
+        ("cells of the subdivision (rules R1-R6)", refined.as_ref().map_or(0, |r| r.count() as u64)),
+    ];
+    match &map.data {
+        MapData::Foliation(data) => {
+            checked.extend(foliation::check_foliation(complex, data, map.manifest.centre, map.manifest.target)?);
+        }
+        MapData::PiecewiseLinear(images) => {
+            let dimension = map.manifest.target.dimension();
+            let image = |v: u32| {
+                let row = &images[v as usize * dimension..][..dimension];
+                [row[0], row[1], if dimension == 3 { row[2] } else { 0.0 }]
+            };
+            piecewise_linear::check_onto_box(complex, image, "P")?;
+            checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
+        }
+    }
+    Ok(claim(map, checked))
+}
+
+fn claim(map: &MapFile, checked: Vec<(&'static str, u64)>) -> Claim {
+    let (kind, theorem) = if map.manifest.is_foliation {
+        ("foliation", "theorem on locally bipolar foliations, rules 1-8")
+    } else {
+        ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P")
+    };
+    let target = match map.manifest.target {
+        Target::Square => "square [0,1]^2",
+        Target::Cube => "cube [0,1]^3",
+        Target::Disk => "diamond |x| + |y| <= 1, and by a fixed homeomorphism onto the unit disk",
+        Target::Ball => "tetrahedron of the format, and by a fixed homeomorphism onto a round ball",
+    };
+    let overlap = if map.manifest.target.dimension() == 3 {
+        "That distant cells of the source do not overlap in space is a property of the input mesh and was not checked."
+    } else {
+        "That cells of the source do not overlap in space is a property of the input mesh and was not checked."
+    };
+    Claim {
+        statement: format!(
+            "The stored map is a homeomorphism from the complex of {} vertices and {} cells onto the {target} ({theorem}).",
+            map.manifest.source_vertices, map.manifest.source_cells
+        ),
+        kind: kind.to_owned(),
+        target: map.manifest.target.name().to_owned(),
+        checked,
+        source_sha256: map.manifest.source_sha256.clone(),
+        limits: vec![
+            "The claim is about the complex with these cells and the exact rational map that the file defines.".to_owned(),
+            overlap.to_owned(),
+            "Evaluation in floating point approximates this map; it is not the certified object.".to_owned(),
+        ],
+    }
+}

@@ -1,0 +1,96 @@
+//! Exact signs and sums of doubles.
+//!
+//! The predicates of `robust` are exact as long as nothing underflows or overflows. Outside
+//! `2^-250 ..= 2^250` (zero aside) the same determinants are computed with rational numbers.
+
+use dashu_int::IBig;
+use dashu_ratio::RBig;
+use robust::{Coord, Coord3D};
+use std::cmp::Ordering;
+
+/// A point, or a vertex' image; only the first two coordinates count in the plane.
+pub(crate) type Point = [f64; 3];
+
+fn within_range(points: &[&[f64]]) -> bool {
+    let (smallest, largest) = (f64::from_bits((1023 - 250) << 52), f64::from_bits((1023 + 250) << 52));
+    points.iter().flat_map(|p| p.iter()).all(|x| *x == 0.0 || (smallest..=largest).contains(&x.abs()))
+}
+
+fn sign_of(value: f64) -> Ordering {
+    value.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
+}
+
+/// The exact value of a finite double. (Callers have refused all others; those would count as 0.)
+fn exact(value: f64) -> RBig {
+    RBig::try_from(value).unwrap_or(RBig::ZERO)
+}
+
+/// The sign of `det(b - a, c - a)`, exact.
+pub(crate) fn orientation_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Ordering {
+    if within_range(&[&a, &b, &c]) {
+        let [a, b, c] = [a, b, c].map(|p| Coord { x: p[0], y: p[1] });
+        return sign_of(robust::orient2d(a, b, c));
+    }
+    let along = |p: [f64; 2], axis: usize| exact(p[axis]) - exact(a[axis]);
+    (along(b, 0) * along(c, 1)).cmp(&(along(b, 1) * along(c, 0)))
+}
+
+/// The sign of `det(b - a, c - a, d - a)`, exact.
+pub(crate) fn orientation_3d(a: Point, b: Point, c: Point, d: Point) -> Ordering {
+    if within_range(&[&a, &b, &c, &d]) {
+        let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p[0], y: p[1], z: p[2] });
+        return sign_of(robust::orient3d(b, a, c, d)); // its convention is the opposite one
+    }
+    let rows = [b, c, d].map(|p| [0, 1, 2].map(|axis| exact(p[axis]) - exact(a[axis])));
+    let minor = |x: usize, y: usize| &rows[1][x] * &rows[2][y] - &rows[1][y] * &rows[2][x];
+    let determinant = &rows[0][0] * minor(1, 2) + &rows[0][1] * minor(2, 0) + &rows[0][2] * minor(0, 1);
+    determinant.cmp(&RBig::ZERO)
+}
+
+/// Whether a triangle in space has area zero: its three shadows have.
+pub(crate) fn is_flat_triangle(a: Point, b: Point, c: Point) -> bool {
+    [(0, 1), (1, 2), (2, 0)].iter().all(|&(x, y)| {
+        let shadow = |p: Point| [p[x], p[y]];
+        orientation_2d(shadow(a), shadow(b), shadow(c)) == Ordering::Equal
+    })
+}
+
+/// All finite doubles are whole multiples of `2^-1074`.
+pub(crate) const FINEST_BITS: usize = 1074;
+
+/// A finite double in units of `2^-1074`.
+pub(crate) fn in_finest_units(value: f64) -> IBig {
+    let bits = value.to_bits();
+    let (exponent, fraction) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));
+    let magnitude = match exponent {
+        0 => IBig::from(fraction),
+        _ => IBig::from(fraction | 1 << 52) << (exponent - 1) as usize,
+    };
+    if value.is_sign_negative() { -magnitude } else { magnitude }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_agree_inside_and_outside_the_range_of_robust() {
+        for scale in [1.0, 2f64.powi(-400), 2f64.powi(320), f64::from_bits(1)] {
+            let at = |x: f64, y: f64, z: f64| [x * scale, y * scale, z * scale];
+            let (o, x, y, z) = (at(0., 0., 0.), at(1., 0., 0.), at(0., 1., 0.), at(0., 0., 1.));
+            assert_eq!(orientation_3d(o, x, y, z), Ordering::Greater);
+            assert_eq!(orientation_3d(x, o, y, z), Ordering::Less);
+            assert_eq!(orientation_3d(o, x, y, at(5., 9., 0.)), Ordering::Equal);
+            assert_eq!(orientation_2d([0., 0.], [scale, 0.], [0., scale]), Ordering::Greater);
+            assert!(is_flat_triangle(o, at(1., 2., 3.), at(2., 4., 6.)));
+            assert!(!is_flat_triangle(o, at(1., 2., 3.), at(2., 4., 7.)));
+        }
+    }
+
+    #[test]
+    fn finest_units_are_exact() {
+        assert_eq!(in_finest_units(1.0), IBig::ONE << FINEST_BITS);
+        assert_eq!(in_finest_units(f64::from_bits(1)), IBig::ONE);
+        assert_eq!(in_finest_units(-0.75), -(IBig::from(3) << (FINEST_BITS - 2)));
+    }
+}

@@ -1,0 +1,123 @@
+//! The three answers, and the reason to stop early.
+//!
+//! Every rule of the checker returns `Checked`: either it holds, or the check stops with a witness
+//! (the file's claim is false) or with an obstacle (this checker cannot decide).
+
+use std::fmt;
+
+/// What the checker answers about a readable map file.
+///
+/// # Example
+/// ```
+/// use homeo_verify::Verdict;
+/// fn exit_code(verdict: &Verdict) -> u8 {
+///     match verdict {
+///         Verdict::Certified(_) => 0,
+///         Verdict::Undecided(_) => 4,
+///         Verdict::Refuted(_) => 5,
+///     }
+/// }
+/// ```
+#[must_use]
+#[derive(Debug, Clone, PartialEq)]
+pub enum Verdict {
+    /// Every hypothesis of the theorem holds: the stored map is a homeomorphism.
+    Certified(Claim),
+    /// A rule fails; the witness shows where.
+    Refuted(Witness),
+    /// The rules are beyond this checker's means; the obstacle says what to change.
+    Undecided(Obstacle),
+}
+
+/// What has been established.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Claim {
+    /// The claim in words, with the theorem that was applied.
+    pub statement: String,
+    /// `foliation` or `piecewise-linear`.
+    pub kind: String,
+    /// `square`, `disk`, `cube` or `ball`.
+    pub target: String,
+    /// What was checked, and how many times.
+    pub checked: Vec<(&'static str, u64)>,
+    /// SHA-256 of the source mesh as stored, in lower-case hexadecimal digits.
+    pub source_sha256: String,
+    /// What the claim does not say.
+    pub limits: Vec<String>,
+}
+
+/// Where a rule of `docs/certificate-format-v1.md` fails.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Witness {
+    /// The rule's name, for instance `"5"` or `"S3"`.
+    pub rule: &'static str,
+    /// What is wrong, in words.
+    pub message: String,
+    /// Cells concerned: of the source for the rules S and 8, of the refined complex for the others.
+    pub cells: Vec<u32>,
+    /// Vertices concerned, in the numbering of the refined complex.
+    pub vertices: Vec<u32>,
+    /// Where those vertices lie (rounded), to be drawn; empty when they have no finite place.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// Why there is no answer, and what would help.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Obstacle {
+    /// What stopped the check.
+    pub message: String,
+    /// What to change in the file.
+    pub remedy: String,
+}
+
+/// The bytes are not a map file of version 1: none of the three verdicts.
+///
+/// # Example
+/// ```
+/// let error = homeo_verify::verify_bytes(b"not a map").unwrap_err();
+/// assert!(error.to_string().contains("zip"));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unreadable {
+    /// Which convention of the container is broken.
+    pub message: String,
+}
+
+impl fmt::Display for Unreadable {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "unreadable map file: {}", self.message)
+    }
+}
+
+impl std::error::Error for Unreadable {}
+
+/// Shorthand for a container rule that fails.
+pub(crate) fn unreadable<T>(message: impl Into<String>) -> Result<T, Unreadable> {
+    Err(Unreadable { message: message.into() })
+}
+
+/// Why a check stops before its end.
+#[derive(Debug)]
+pub(crate) enum Stop {
+    Refuted(Witness),
+    Undecided(Obstacle),
+}
+
+/// The result of checking one rule.
+pub(crate) type Checked<T = ()> = Result<T, Stop>;
+
+/// Stops with a witness.
+pub(crate) fn refuted<T>(
+    rule: &'static str,
+    message: impl Into<String>,
+    cells: &[usize],
+    vertices: &[u32],
+) -> Checked<T> {
+    let cells = cells.iter().map(|&c| u32::try_from(c).unwrap_or(u32::MAX)).collect();
+    Err(Stop::Refuted(Witness { rule, message: message.into(), cells, vertices: vertices.to_vec(), points: vec![] }))
+}
+
+/// Stops without an answer.
+pub(crate) fn undecided<T>(message: &str, remedy: &str) -> Checked<T> {
+    Err(Stop::Undecided(Obstacle { message: message.into(), remedy: remedy.into() }))
+}
