@@ -10,7 +10,8 @@ function presets(model) {
   const list = [['surface', 'Surface', surface]];
   const axis = model.data.coordinates[0];
   if (model.levels.length) {
-    const veil = isFlat ? {} : { opacity: 0.1 };
+    // Spheres hide each other: half of them is cut away.
+    const veil = isFlat ? {} : { opacity: 0.1, ...(axis === 'radius' ? { cut: 'target x', cutAt: 0.5, cutFlip: false } : {}) };
     list.push(['levels', isFlat ? 'Lines' : 'Level sets', { ...surface, ...veil, coordinate: isFlat ? 'all' : axis, allLevels: true, colouring: isFlat ? 'position' : 'checks' }]);
   }
   if (model.leaves) {

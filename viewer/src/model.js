@@ -222,7 +222,9 @@ export class Model {
     shared.cutAxis.value = axis;
     shared.cutValue.value = space === 'source' ? settings.cutAt : position;
     shared.cutSign.value = settings.cutFlip ? -1 : 1;
-    if (!this.isFlat && this.data.volume) this.updateSection(space, axis, position, settings);
+    // A veil is there to look inside, which a section would close again.
+    if (!this.isFlat && this.data.volume && settings.opacity >= 0.5) this.updateSection(space, axis, position, settings);
+    else if (this.section) this.section.visible = false;
   }
 
   /** Lowest and highest position of the cut, in the coordinates of its side. */

@@ -32,7 +32,7 @@ fn main() {
 }
 
 /// A generator of numbers that repeats in every run (xorshift).
-struct Random(u64);
+pub struct Random(pub u64);
 
 impl Random {
     fn below(&mut self, limit: usize) -> usize {
@@ -92,7 +92,7 @@ fn status(field: &str) -> Option<u64> {
 }
 
 /// A seed with one to eight changes.
-fn damaged(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
+pub fn damaged(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
     const WORDS: [&[u8]; 16] = [
         b"-1",
         b"0",
@@ -143,7 +143,7 @@ fn replace_word(bytes: &mut Vec<u8>, at: usize, word: &[u8]) {
 }
 
 /// Valid files of several sizes and encodings.
-fn seeds(format: Format) -> Vec<Vec<u8>> {
+pub fn seeds(format: Format) -> Vec<Vec<u8>> {
     let mut seeds = Vec::new();
     for size in [1, 4, 40] {
         for mesh in [grid(size, false), grid(size, true)] {

@@ -54,7 +54,7 @@ fn demo(target: TargetShape, inverse: Inverse, steps: usize) -> ReportData {
         "Two triangles have directions that disagree across their common edge (rule 2).".into()
     };
     ReportData {
-        title: format!("demo_{0}.mesh onto the {0}", target.name()),
+        title: format!("Example page, made-up data: a shape onto the {}", target.name()),
         subtitle: "Simplicial foliation, homeo 0.1.0. Made-up data, nothing is certified.".into(),
         target,
         verdict: VerdictWords {

@@ -114,6 +114,15 @@ where
         drop(file);
         let clock = Instant::now();
         let again = read_map(&std::fs::read(&path).expect("readable")).expect("a map");
+        if let Ok(html) = std::env::var("HTML") {
+            let clock = Instant::now();
+            let data = homeo::export::report_of_map(&again, &path, "a try", Default::default());
+            println!("images {:.3}s", clock.elapsed().as_secs_f64());
+            let mut sorted = data.distortion.clone();
+            sorted.sort_by(f64::total_cmp);
+            println!("distortion median {:.2} 90% {:.2} 99% {:.2e} max {:.2e}", sorted[sorted.len() / 2], sorted[sorted.len() * 9 / 10], sorted[sorted.len() * 99 / 100], sorted[sorted.len() - 1]);
+            homeo::export::write_report(&data, &mut std::fs::File::create(html).expect("writable")).expect("report");
+        }
         println!("read back {:.3}s {}", clock.elapsed().as_secs_f64(), again.target());
     }
 }

@@ -161,7 +161,9 @@ impl Reader {
             close_polygon(&mut self.mesh.polygons);
             self.polygon_tags.push(scanner.integer("the reference of an element")?);
         }
-        self.polygon_sections.push(section);
+        if section.count > 0 {
+            self.polygon_sections.push(section);
+        }
         Ok(())
     }
 

@@ -143,6 +143,21 @@ impl<'a> Base64<'a> {
 
     /// Decodes four digits into up to three bytes.
     fn group(&mut self, out: &mut Vec<u8>) -> Option<()> {
+        if let Some(&group) = self.bytes[self.at..].first_chunk::<4>() {
+            let values = group.map(|byte| VALUES[usize::from(byte)]);
+            if values.iter().all(|&value| value < 64) {
+                let bits = values.iter().fold(0, |bits, &value| bits << 6 | u32::from(value));
+                out.extend_from_slice(&bits.to_be_bytes()[1..]);
+                self.at += 4;
+                return Some(());
+            }
+        }
+        self.broken_group(out)
+    }
+
+    /// A group with padding or blanks in it.
+    #[cold]
+    fn broken_group(&mut self, out: &mut Vec<u8>) -> Option<()> {
         let mut bits = 0_u32;
         let mut digits = 0;
         let mut seen = 0;
@@ -167,20 +182,25 @@ impl<'a> Base64<'a> {
     }
 }
 
-fn digit(byte: u8) -> Option<u8> {
-    match byte {
-        b'A'..=b'Z' => Some(byte - b'A'),
-        b'a'..=b'z' => Some(byte - b'a' + 26),
-        b'0'..=b'9' => Some(byte - b'0' + 52),
-        b'+' => Some(62),
-        b'/' => Some(63),
-        _ => None,
+const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+/// The value of each digit; 255 for bytes that are none.
+const VALUES: [u8; 256] = {
+    let mut values = [255; 256];
+    let mut index = 0;
+    while index < 64 {
+        values[DIGITS[index] as usize] = index as u8;
+        index += 1;
     }
+    values
+};
+
+fn digit(byte: u8) -> Option<u8> {
+    Some(VALUES[usize::from(byte)]).filter(|&value| value < 64)
 }
 
 /// Encodes bytes as base64 with padding.
 pub(super) fn encode_base64(bytes: &[u8]) -> Vec<u8> {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = Vec::with_capacity(bytes.len().div_ceil(3) * 4);
     for chunk in bytes.chunks(3) {
         let mut group = [0; 4];

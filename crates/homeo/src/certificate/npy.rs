@@ -37,7 +37,11 @@ element!(i8, "|i1");
 /// An array of `shape` as the bytes of an `.npy` file.
 pub(super) fn encode<T: Element>(shape: &[usize], elements: impl ExactSizeIterator<Item = T>) -> Vec<u8> {
     debug_assert_eq!(shape.iter().product::<usize>(), elements.len());
-    let dimensions: String = shape.iter().map(|n| format!("{n},")).collect();
+    // To the letter as NumPy writes it.
+    let dimensions = match shape {
+        [rows] => format!("{rows},"),
+        _ => shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", "),
+    };
     let mut header = format!("{{'descr': '{}', 'fortran_order': False, 'shape': ({dimensions}), }}", T::DESCRIPTION);
     // The data begin at a multiple of 64 bytes.
     let padding = (64 - (10 + header.len() + 1) % 64) % 64;

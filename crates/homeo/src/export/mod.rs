@@ -38,6 +38,7 @@ mod histogram;
 mod leaves;
 mod levels;
 mod marching;
+mod of_map;
 mod pack;
 mod page;
 mod scene;
@@ -46,6 +47,7 @@ mod simplify;
 mod tests;
 
 pub use data::{CellList, CellMesh, Leaf, ReportData, TargetShape, VerdictWords};
+pub use of_map::report_of_map;
 
 use std::io::{self, Write};
 

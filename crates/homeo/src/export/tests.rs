@@ -8,6 +8,7 @@ use super::levels::{fit, level_sets};
 use super::marching::zero_set;
 use super::pack::{Block, Frame, write_base64};
 use super::page::{escape, grouped, rounded};
+use super::simplify::simplify;
 use super::write_report;
 use std::io::ErrorKind;
 
@@ -83,6 +84,17 @@ fn boundary_of_the_cube_points_outwards_and_encloses_its_volume() {
         })
         .sum();
     assert!((volume - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_simplified_surface_is_small_and_keeps_vertices_of_the_mesh() {
+    let mesh = cube(16);
+    let facets = visible_facets(&mesh.cells);
+    assert_eq!(simplify(&mesh, facets.clone(), 10_000).triangles, facets.triangles);
+    let thinned = simplify(&mesh, facets, 500);
+    assert!((100..=500).contains(&thinned.triangles.len()));
+    assert_eq!(thinned.triangles.len(), thinned.cells.len());
+    assert!(thinned.triangles.iter().all(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]));
 }
 
 #[test]

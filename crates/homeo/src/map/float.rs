@@ -55,7 +55,7 @@ impl<const K: usize> Foliation<K> {
         self.locator.exact(self.source(), &self.parts().mesh, &rational_point(point))
     }
 
-    fn fast_image(&self, at: &FloatLocation<K>) -> Result<Enclosed, Undecided> {
+    pub(super) fn fast_image(&self, at: &FloatLocation<K>) -> Result<Enclosed, Undecided> {
         let mut back = FastLeaf::new(at);
         let start = back.follow(self, Sense::Backward)?;
         let mut ahead = FastLeaf::new(at);
@@ -131,7 +131,7 @@ impl<const K: usize> Foliation<K> {
     }
 
     /// The rounded (and, for disk and ball, round) form of an exact image.
-    fn rounded_image(&self, image: &[Rational; 3]) -> Enclosed {
+    pub(super) fn rounded_image(&self, image: &[Rational; 3]) -> Enclosed {
         let near = [0, 1, 2].map(|axis| image[axis].to_f64());
         match self.parts().target {
             Target::Square | Target::Cube => Enclosed { point: near, radius: f64::EPSILON },

@@ -9,10 +9,12 @@ mod fast;
 mod float;
 mod foliation;
 mod locate;
+mod sample;
 mod section;
 mod target;
 
 pub use foliation::{Centre, Foliation, FoliationParts};
+pub use sample::{LeafPolyline, distortions};
 pub use section::Section;
 pub use target::Target;
 

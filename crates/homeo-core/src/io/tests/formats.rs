@@ -199,6 +199,10 @@ fn medit_sections_in_any_order() {
     assert_eq!(mesh.attribute("tag", Element::Polygon).unwrap().values, Values::I64(vec![7, 8]));
     assert_eq!(mesh.attribute("tag", Element::Vertex), None);
     assert_eq!(mesh.losses.len(), 3);
+    // Found by damaging files: an empty section in front of all others.
+    let empty = b"MeshVersionFormatted 1 Dimension 2 Triangles 0 Hexahedra 0 Vertices 3 0 0 0 1 0 0 0 1 0 Triangles 1 1 2 3 0 End";
+    let mesh = read(Format::Medit, empty);
+    assert_eq!((mesh.space, polygons(&mesh)), (2, vec![vec![0, 1, 2]]));
 }
 
 const VTK_5: &[u8] = b"# vtk DataFile Version 5.1\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\ntime 1 1 double\n0.5\n\
