@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use homeo::certificate::FoliationMap;
-use homeo::export::{CellList, CellMesh, ReportData, TargetShape, VerdictWords, write_report};
+use homeo::export::{VerdictWords, report_of_map, write_report};
 use homeo::map::{Bijection, Target};
 use homeo::progress::Progress;
 use homeo_core::mesh::SimplicialComplex;
@@ -60,28 +60,12 @@ pub fn stage(
     sampled: &Sampled,
     outputs: &mut Outputs,
 ) -> Result<()> {
-    let data = ReportData {
-        title: title.to_owned(),
-        subtitle: format!("simplicial foliation, homeo {}", env!("CARGO_PKG_VERSION")),
-        target: shape_of(map.target()),
-        verdict: verdict(claim),
-        facts: facts(map, sampled),
-        stage_seconds: session.seconds().into_iter().map(|(name, s)| (name.to_owned(), s)).collect(),
-        cells: cells(map, sampled),
-        leaves: Vec::new(),
-        distortion: sampled.stretch.clone(),
-    };
+    let subtitle = format!("simplicial foliation, homeo {}", env!("CARGO_PKG_VERSION"));
+    let mut data = report_of_map(map, title, &subtitle, verdict(claim));
+    data.facts = facts(map, sampled);
+    data.stage_seconds = session.seconds().into_iter().map(|(name, s)| (name.to_owned(), s)).collect();
     outputs.stage(session, path, |out| write_report(&data, out).map_err(|e| e.to_string()))?;
     session.check()
-}
-
-fn shape_of(target: Target) -> TargetShape {
-    match target {
-        Target::Square => TargetShape::Square,
-        Target::Disk => TargetShape::Disk,
-        Target::Cube => TargetShape::Cube,
-        Target::Ball => TargetShape::Ball,
-    }
 }
 
 fn verdict(claim: &Claim) -> VerdictWords {
@@ -116,20 +100,4 @@ fn counts<const K: usize>(
     what: &'static str,
 ) -> (usize, usize, usize, &'static str) {
     (source.vertex_count(), source.cell_count(), refined.cell_count(), what)
-}
-
-fn cells(map: &FoliationMap, sampled: &Sampled) -> CellMesh {
-    // A vertex of no cell has no image; the page does not draw it.
-    let images = sampled.images.iter().map(|p| if p[0].is_finite() { *p } else { [0.0; 3] }).collect();
-    let (positions, cells) = match map {
-        FoliationMap::Surface(map) => {
-            let cells = map.source().complex().cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
-            (map.source().positions().to_vec(), CellList::Triangles(cells))
-        }
-        FoliationMap::Volume(map) => {
-            let cells = map.source().complex().cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
-            (map.source().positions().to_vec(), CellList::Tetrahedra(cells))
-        }
-    };
-    CellMesh { positions, images, cells }
 }

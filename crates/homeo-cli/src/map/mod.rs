@@ -176,8 +176,6 @@ fn construction(info: &FoliationInfo) -> Value {
 fn quality(info: &FoliationInfo, sampled: &Sampled) -> Value {
     let mut quality = construction(info);
     quality["sampled"] = sampled.quality();
-    quality["evaluation"] =
-        json!({"max_radius_at_vertices": sampled.max_radius, "vertices_in_no_cell": sampled.missing});
     quality
 }
 
@@ -204,7 +202,7 @@ fn words(
             sampled.quantile(1.0)
         ),
     );
-    lines.add("float error", format!("at most {:.1e} at the vertices", sampled.max_radius));
+    lines.add("float error", format!("at most {:.1e} (sampled)", sampled.max_radius));
     lines.add("time", stages(&session.seconds()));
     let written = [&options.output, &options.vtu, &options.report];
     for path in written.into_iter().flatten() {

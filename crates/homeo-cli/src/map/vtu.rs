@@ -42,7 +42,7 @@ pub fn stage(session: &Session, path: &Path, mesh: &MeshFile, sampled: &Sampled,
         name: name("distortion", cells),
         element: cells,
         components: 1,
-        values: Values::F64(sampled.stretch.clone()),
+        values: Values::F64(sampled.source_stretch.clone()),
     };
     mesh.attributes.extend([image, distortion]);
     let mut losses = Vec::new();
