@@ -73,7 +73,12 @@ impl Complex {
             if let (Some(a), Some(b)) = (self.beyond(c, 0), self.beyond(c, 1))
                 && a == b
             {
-                return refuted(rules.cells, format!("cells {c} and {a} have the same vertices"), &[c, a], self.cell(c));
+                return refuted(
+                    rules.cells,
+                    format!("cells {c} and {a} have the same vertices"),
+                    &[c, a],
+                    self.cell(c),
+                );
             }
         }
         Ok(())

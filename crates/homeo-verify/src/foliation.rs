@@ -133,7 +133,8 @@ impl Foliation<'_> {
             let inwards = if target == Target::Ball { at_centre } else { !at_centre };
             if self.sign(slot) != if inwards { 1 } else { -1 } {
                 let (facet, length) = self.complex.facet(slot);
-                let message = "a facet of the centre or the boundary is not the source or sink that the target asks for";
+                let message =
+                    "a facet of the centre or the boundary is not the source or sink that the target asks for";
                 return refuted("3", message, &[slot / size], &facet[..length]);
             }
         }
@@ -226,7 +227,12 @@ impl Foliation<'_> {
                 if count != 1 {
                     let cells: Vec<usize> = places.map(|(c, _)| c).collect();
                     let ends = edge_vertices(group[0]);
-                    return refuted("5", format!("around edge {ends:?} leaves {what} in {count} places"), &cells, &ends);
+                    return refuted(
+                        "5",
+                        format!("around edge {ends:?} leaves {what} in {count} places"),
+                        &cells,
+                        &ends,
+                    );
                 }
             }
         }

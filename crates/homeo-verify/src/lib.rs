@@ -175,7 +175,8 @@ fn claim(map: &MapFile, checked: Vec<(&'static str, u64)>) -> Claim {
         checked,
         source_sha256: map.manifest.source_sha256.clone(),
         limits: vec![
-            "The claim is about the complex with these cells and the exact rational map that the file defines.".to_owned(),
+            "The claim is about the complex with these cells and the exact rational map that the file defines."
+                .to_owned(),
             overlap.to_owned(),
             "Evaluation in floating point approximates this map; it is not the certified object.".to_owned(),
         ],

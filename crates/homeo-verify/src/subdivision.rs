@@ -124,9 +124,8 @@ fn determinant<T>(m: &[[T; 4]; 4], size: usize) -> T
 where
     T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
 {
-    let two = |r: usize, a: usize, b: usize| {
-        m[r][a].clone() * m[r + 1][b].clone() - m[r][b].clone() * m[r + 1][a].clone()
-    };
+    let two =
+        |r: usize, a: usize, b: usize| m[r][a].clone() * m[r + 1][b].clone() - m[r][b].clone() * m[r + 1][a].clone();
     let three = |r: usize, a: usize, b: usize, c: usize| {
         m[r][a].clone() * two(r + 1, b, c) - m[r][b].clone() * two(r + 1, a, c) + m[r][c].clone() * two(r + 1, a, b)
     };

@@ -120,7 +120,13 @@ where
             println!("images {:.3}s", clock.elapsed().as_secs_f64());
             let mut sorted = data.distortion.clone();
             sorted.sort_by(f64::total_cmp);
-            println!("distortion median {:.2} 90% {:.2} 99% {:.2e} max {:.2e}", sorted[sorted.len() / 2], sorted[sorted.len() * 9 / 10], sorted[sorted.len() * 99 / 100], sorted[sorted.len() - 1]);
+            println!(
+                "distortion median {:.2} 90% {:.2} 99% {:.2e} max {:.2e}",
+                sorted[sorted.len() / 2],
+                sorted[sorted.len() * 9 / 10],
+                sorted[sorted.len() * 99 / 100],
+                sorted[sorted.len() - 1]
+            );
             homeo::export::write_report(&data, &mut std::fs::File::create(html).expect("writable")).expect("report");
         }
         println!("read back {:.3}s {}", clock.elapsed().as_secs_f64(), again.target());

@@ -65,37 +65,37 @@ impl GraphLaplacian {
         self.diagonal.len()
     }
 
-    /// The field that takes the given values where they are given and is harmonic elsewhere.
+    /// The field that takes the given values where they are given and satisfies `L u = load` elsewhere.
     ///
-    /// Conjugate gradients with a symmetric Gauss-Seidel preconditioner, to a residual of
-    /// `relative_residual` of the first one or `10_000` steps, whichever is sooner.
+    /// Conjugate gradients to a residual of `relative_residual` of the first one, or 2,000 steps. The
+    /// preconditioner is a two-level cycle: a Gauss-Seidel sweep, a correction that is constant on
+    /// aggregates of vertices (solved directly), and the sweep backwards.
     /// Vertices without edges get 0.
-    pub fn harmonic_iterative(&self, fixed: &[Option<f64>], relative_residual: f64) -> Vec<f64> {
+    pub fn solve_iterative(&self, fixed: &[Option<f64>], load: &[f64], relative_residual: f64) -> Vec<f64> {
         let free: Vec<bool> = fixed.iter().zip(&self.diagonal).map(|(f, &d)| f.is_none() && d > 0.0).collect();
         let mut u: Vec<f64> = fixed.iter().map(|value| value.unwrap_or(0.0)).collect();
         let n = u.len();
         let mut r = vec![0.0; n];
         for i in (0..n).filter(|&i| free[i]) {
-            r[i] = self.row(i).map(|(j, w)| w * u[j]).sum::<f64>() - self.diagonal[i] * u[i];
+            r[i] = load[i] + self.row(i).map(|(j, w)| w * u[j]).sum::<f64>() - self.diagonal[i] * u[i];
         }
+        let coarse = Coarse::new(self, &free);
         let (mut z, mut q) = (vec![0.0; n], vec![0.0; n]);
-        self.precondition(&free, &r, &mut z);
+        self.precondition(&free, &coarse, &r, &mut z);
         let mut p = z.clone();
         let mut rz = dot(&r, &z);
         let target = rz * relative_residual * relative_residual;
-        for _ in 0..10_000 {
+        for _ in 0..2_000 {
             if rz <= target || rz <= 0.0 {
                 break;
             }
-            for i in (0..n).filter(|&i| free[i]) {
-                q[i] = self.diagonal[i] * p[i] - self.row(i).map(|(j, w)| w * p[j]).sum::<f64>();
-            }
+            self.apply(&free, &p, &mut q);
             let alpha = rz / dot(&p, &q);
             for i in 0..n {
                 u[i] += alpha * p[i];
                 r[i] -= alpha * q[i];
             }
-            self.precondition(&free, &r, &mut z);
+            self.precondition(&free, &coarse, &r, &mut z);
             let next = dot(&r, &z);
             let beta = next / rz;
             rz = next;
@@ -103,31 +103,38 @@ impl GraphLaplacian {
                 p[i] = z[i] + beta * p[i];
             }
         }
-        self.smooth(&free, &mut u);
+        self.smooth(&free, load, &mut u);
         u
     }
 
-    /// Symmetric Gauss-Seidel: `z = (D + U)^-1 D (D + L)^-1 r` on the free vertices, 0 elsewhere.
-    fn precondition(&self, free: &[bool], r: &[f64], z: &mut [f64]) {
+    fn apply(&self, free: &[bool], x: &[f64], y: &mut [f64]) {
+        for i in (0..x.len()).filter(|&i| free[i]) {
+            y[i] = self.diagonal[i] * x[i] - self.row(i).map(|(j, w)| w * x[j]).sum::<f64>();
+        }
+    }
+
+    /// One symmetric two-level cycle from zero.
+    fn precondition(&self, free: &[bool], coarse: &Coarse, r: &[f64], z: &mut [f64]) {
         let n = r.len();
         for i in (0..n).filter(|&i| free[i]) {
             let lower: f64 = self.row(i).filter(|&(j, _)| j < i).map(|(j, w)| w * z[j]).sum();
             z[i] = (r[i] + lower) / self.diagonal[i];
         }
+        coarse.correct(self, free, r, z);
         for i in (0..n).rev().filter(|&i| free[i]) {
-            let upper: f64 = self.row(i).filter(|&(j, _)| j > i).map(|(j, w)| w * z[j]).sum();
-            z[i] += upper / self.diagonal[i];
+            let around: f64 = self.row(i).map(|(j, w)| w * z[j]).sum();
+            z[i] = (r[i] + around) / self.diagonal[i];
         }
     }
 
     /// A few Gauss-Seidel sweeps: they make each value an average of its neighbours, which removes
     /// the spurious extrema that the iteration's residual leaves where the field is tiny.
-    fn smooth(&self, free: &[bool], u: &mut [f64]) {
+    fn smooth(&self, free: &[bool], load: &[f64], u: &mut [f64]) {
         let n = u.len();
         for sweep in 0..4 {
             let relax = |u: &mut [f64], i: usize| {
                 if free[i] {
-                    u[i] = self.row(i).map(|(j, w)| w * u[j]).sum::<f64>() / self.diagonal[i];
+                    u[i] = (load[i] + self.row(i).map(|(j, w)| w * u[j]).sum::<f64>()) / self.diagonal[i];
                 }
             };
             if sweep % 2 == 0 { (0..n).for_each(|i| relax(u, i)) } else { (0..n).rev().for_each(|i| relax(u, i)) }
@@ -218,6 +225,91 @@ impl GraphLaplacian {
         let range = if high > low { high - low } else { 1.0 };
         Ok(x.iter().map(|v| (v - low) / range).collect())
     }
+}
+
+/// Aggregates of free vertices and the matrix between them, factored.
+struct Coarse {
+    aggregate: Vec<u32>,
+    factor: Option<Llt<usize, f64>>,
+    count: usize,
+}
+
+/// Aggregates are made so large that there are about this many of them.
+const AGGREGATES: usize = 3_000;
+const NO_AGGREGATE: u32 = u32::MAX;
+
+impl Coarse {
+    fn new(fine: &GraphLaplacian, free: &[bool]) -> Self {
+        let free_count = free.iter().filter(|&&f| f).count();
+        let size = free_count.div_ceil(AGGREGATES).max(8);
+        let (aggregate, count) = aggregates(fine, free, size);
+        let mut triplets = Vec::new();
+        let mut diagonal = vec![0.0; count];
+        for i in (0..free.len()).filter(|&i| free[i]) {
+            let here = aggregate[i] as usize;
+            for (j, w) in fine.row(i) {
+                let there = aggregate[j];
+                if there as usize == here {
+                    continue;
+                }
+                diagonal[here] += w;
+                if there != NO_AGGREGATE && (there as usize) < here {
+                    triplets.push(Triplet::new(here, there as usize, -w));
+                }
+            }
+        }
+        // A touch more than the sum keeps parts that touch no fixed vertex definite.
+        triplets.extend(
+            diagonal.iter().enumerate().map(|(k, &d)| Triplet::new(k, k, d * (1.0 + 1e-10) + f64::MIN_POSITIVE)),
+        );
+        let factor =
+            SparseColMat::<usize, f64>::try_new_from_triplets(count, count, &triplets).ok().and_then(|matrix| {
+                let symbolic = SymbolicLlt::try_new(matrix.symbolic(), Side::Lower).ok()?;
+                Llt::try_new_with_symbolic(symbolic, matrix.as_ref(), Side::Lower).ok()
+            });
+        Self { aggregate, factor, count }
+    }
+
+    /// Adds the aggregates' correction of the residual of `z`.
+    fn correct(&self, fine: &GraphLaplacian, free: &[bool], r: &[f64], z: &mut [f64]) {
+        let Some(factor) = &self.factor else { return };
+        let mut right = Mat::<f64>::zeros(self.count, 1);
+        for i in (0..r.len()).filter(|&i| free[i]) {
+            let residual = r[i] - fine.diagonal[i] * z[i] + fine.row(i).map(|(j, w)| w * z[j]).sum::<f64>();
+            right[(self.aggregate[i] as usize, 0)] += residual;
+        }
+        let correction = factor.solve(&right);
+        for i in (0..r.len()).filter(|&i| free[i]) {
+            z[i] += correction[(self.aggregate[i] as usize, 0)];
+        }
+    }
+}
+
+/// Connected groups of about `size` free vertices, grown breadth first in the order of the vertices.
+fn aggregates(fine: &GraphLaplacian, free: &[bool], size: usize) -> (Vec<u32>, usize) {
+    let mut aggregate = vec![NO_AGGREGATE; free.len()];
+    let mut count = 0;
+    let mut queue = std::collections::VecDeque::new();
+    for seed in 0..free.len() {
+        if !free[seed] || aggregate[seed] != NO_AGGREGATE {
+            continue;
+        }
+        let mut members = 1;
+        aggregate[seed] = count;
+        queue.clear();
+        queue.push_back(seed);
+        while let Some(i) = queue.pop_front() {
+            for (j, _) in fine.row(i) {
+                if members < size && free[j] && aggregate[j] == NO_AGGREGATE {
+                    aggregate[j] = count;
+                    members += 1;
+                    queue.push_back(j);
+                }
+            }
+        }
+        count += 1;
+    }
+    (aggregate, count as usize)
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

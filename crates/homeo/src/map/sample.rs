@@ -34,7 +34,10 @@ impl<const K: usize> Foliation<K> {
                 corner[vertex.index()].get_or_insert((cell, local));
             }
         }
-        corner.par_iter().map(|at| at.map_or([f64::NAN; 3], |(cell, local)| self.image_of_corner(cell, local))).collect()
+        corner
+            .par_iter()
+            .map(|at| at.map_or([f64::NAN; 3], |(cell, local)| self.image_of_corner(cell, local)))
+            .collect()
     }
 
     fn image_of_corner(&self, cell: CellId, local: usize) -> [f64; 3] {

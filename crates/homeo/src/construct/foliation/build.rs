@@ -6,8 +6,8 @@ use homeo_core::mesh::{Adjacency, CellId, EdgeIndex, Facet};
 
 use super::boundary::{BoundarySurface, facet_masks, marked_facets};
 use super::directions::Flow;
-use super::field::{harmonic_rank, ranks};
-use super::front::{Front, Side, Stuck, Surroundings, marked_vertices, positions_in};
+use super::field::{cell_means, guiding_field, ranks, smoothed_gradients};
+use super::front::{Front, Side, Stuck, Surroundings, positions_in};
 use super::{FoliationError, FoliationInfo, FoliationParams, regions, section};
 use crate::input::SourceMesh;
 use crate::map::{Centre, Foliation, FoliationParts, Section, Target};
@@ -127,12 +127,13 @@ impl<const K: usize> Build<'_, K> {
         let mut stage = Stage::new(RefinedMesh::unrefined(self.source))?;
         while stage.unspan(self.source, &mut [])? {}
         let mut surroundings = self.surround(&mut stage)?;
-        let order = self.order(&mut stage, &mut surroundings)?;
+        let (order, field) = self.order(&mut stage, &mut surroundings)?;
 
         self.begin("directions")?;
         let complex = stage.mesh.complex();
         let position = positions_in(&order, complex.cell_count());
-        let mut flow = Flow::new(complex, &stage.guide, &stage.adjacency, &surroundings, &position);
+        let wanted = smoothed_gradients(complex, &stage.guide, &field);
+        let mut flow = Flow::new(complex, &stage.guide, &stage.adjacency, &surroundings, &position, &wanted);
         self.begin("smooth")?;
         for _ in 0..self.params.smoothing_sweeps {
             flow.smooth();
@@ -256,16 +257,21 @@ impl<const K: usize> Build<'_, K> {
     }
 
     /// Finds an order, by restarts and refinement where the front gets stuck.
-    fn order(&mut self, stage: &mut Stage<K>, surroundings: &mut Surroundings) -> Result<Vec<CellId>, FoliationError> {
+    fn order(
+        &mut self,
+        stage: &mut Stage<K>,
+        surroundings: &mut Surroundings,
+    ) -> Result<(Vec<CellId>, Vec<f64>), FoliationError> {
         loop {
             self.begin("harmonic")?;
-            let values = self.field(stage, surroundings);
+            let field = self.field(stage, surroundings);
+            let values = cell_means(stage.mesh.complex(), &field);
             self.begin("order")?;
             let mut least: Option<Stuck> = None;
             for attempt in 0..self.params.restarts.max(1) {
                 self.check_limits()?;
                 match advance(stage, surroundings, &values, attempt, self.params.seed) {
-                    Ok(order) => return Ok(order),
+                    Ok(order) => return Ok((order, field)),
                     Err(stuck) => {
                         self.info.restarts += 1;
                         if least.as_ref().is_none_or(|best| stuck.remaining.len() < best.remaining.len()) {
@@ -280,12 +286,10 @@ impl<const K: usize> Build<'_, K> {
     }
 
     fn field(&self, stage: &Stage<K>, surroundings: &Surroundings) -> Vec<f64> {
-        let complex = stage.mesh.complex();
-        let mut ends = [marked_vertices(complex, &surroundings.source), marked_vertices(complex, &surroundings.sink)];
-        if let Some((centre, side)) = surroundings.centre {
-            ends[usize::from(side == Side::Sink)] = complex.cell(centre).to_vec();
-        }
-        harmonic_rank(complex, &stage.guide, &stage.edges, &ends[0], &ends[1])
+        let [source, sink] =
+            [&surroundings.source, &surroundings.sink].map(|masks| marked_facets(masks).collect::<Vec<_>>());
+        let centre = surroundings.centre.map(|(cell, _)| cell);
+        guiding_field(stage.mesh.complex(), &stage.guide, &stage.edges, &source, &sink, centre)
     }
 
     /// Refines round the cells that a front could not take, or everything after several such tries.

@@ -29,6 +29,8 @@ pub struct Flow<'a, const K: usize> {
     signs: Vec<[i8; K]>,
     /// Unit vectors.
     vectors: Vec<[f32; 3]>,
+    /// Size of the guiding field's gradient: how many leaves should pass.
+    densities: Vec<f32>,
     /// A topological order: flow goes from lower to higher keys.
     keys: Vec<f64>,
     /// Per cell, a bit for each facet that its direction was clamped against in the last sweep.
@@ -38,13 +40,14 @@ pub struct Flow<'a, const K: usize> {
 }
 
 impl<'a, const K: usize> Flow<'a, K> {
-    /// The field of an order (`position` of each cell in it), each direction in the middle of its bounds.
+    /// The field of an order (`position` of each cell in it), near the given vectors within the signs.
     pub fn new(
         complex: &'a SimplicialComplex<K>,
         positions: &[[f64; 3]],
         adjacency: &'a Adjacency<K>,
         surroundings: &Surroundings,
         position: &[u32],
+        wanted: &[[f32; 3]],
     ) -> Self {
         let signs: Vec<[i8; K]> = complex
             .cell_ids()
@@ -56,24 +59,17 @@ impl<'a, const K: usize> Flow<'a, K> {
             corners: complex.cells(),
             spans,
             vectors: vec![[0.0; 3]; signs.len()],
+            densities: wanted.iter().map(|w| dot(*w, *w).sqrt()).collect(),
             clamped: vec![0; signs.len()],
             keys: position.iter().map(|&p| f64::from(p)).collect(),
             skip: surroundings.centre.map(|(cell, _)| cell),
             signs,
         };
         for index in 0..flow.signs.len() {
-            let signs = flow.signs[index];
-            let inward = signs.iter().filter(|&&s| s > 0).count().max(1) as f32;
-            let outward = signs.iter().filter(|&&s| s < 0).count().max(1) as f32;
-            let offsets = signs.map(|s| if s > 0 { 1.0 / inward } else { -f32::from(s < 0) / outward });
+            let (offsets, _) = flow.constrained(index, wanted[index]);
             flow.vectors[index] = normalized(combine(&flow.spans[index], &offsets));
         }
         flow
-    }
-
-    /// The sign of each offset of each cell.
-    pub fn signs(&self) -> &[[i8; K]] {
-        &self.signs
     }
 
     /// One sweep of constrained smoothing over all cells.
@@ -231,22 +227,67 @@ impl<'a, const K: usize> Flow<'a, K> {
 
     /// Directions as whole numbers that add up to zero, the positive ones to [`OFFSET_SUM`], and the
     /// length of each (in the mesh's units).
+    ///
+    /// The offsets of a cell are the *fluxes* through its facets, and zero sum means that what comes in
+    /// goes out. So a positive flux on every facet that is conserved in every cell makes the map keep
+    /// the measure of leaves: they neither pile up nor thin out systematically. Fluxes are found along
+    /// the order: what comes into a cell is divided among its outflow facets as the smoothed vectors want.
     pub fn quantize(&self) -> (Vec<[i8; K]>, Vec<f64>) {
-        let mut directions = Vec::with_capacity(self.signs.len());
-        let mut lengths = Vec::with_capacity(self.signs.len());
-        for index in 0..self.signs.len() {
-            if self.skip == Some(CellId::new(index)) {
-                directions.push([0; K]);
-                lengths.push(0.0);
-                continue;
+        let wanted = self.wanted_fluxes();
+        let mut fluxes = wanted.clone();
+        let mut order: Vec<CellId> = (0..self.signs.len()).map(CellId::new).collect();
+        order.sort_unstable_by(|a, b| self.keys[a.index()].total_cmp(&self.keys[b.index()]));
+        let mut directions = vec![[0; K]; self.signs.len()];
+        let mut lengths = vec![0.0; self.signs.len()];
+        for cell in order.into_iter().filter(|&cell| self.skip != Some(cell)) {
+            let index = cell.index();
+            let signs = self.signs[index];
+            let sum =
+                |fluxes: &[f32; K], sign: i8| (0..K).filter(|&i| signs[i] == sign).map(|i| fluxes[i]).sum::<f32>();
+            let factor = sum(&fluxes[index], 1) / sum(&wanted[index], -1);
+            for i in (0..K).filter(|&i| signs[i] < 0) {
+                // Bounds keep single precision from running out on extreme meshes.
+                let flux = (wanted[index][i] * factor).clamp(1e-30, 1e30);
+                fluxes[index][i] = flux;
+                let far = self.adjacency.across(cell, i);
+                if far.is_some() {
+                    fluxes[far.cell().index()][far.opposite()] = flux;
+                }
             }
-            let (offsets, _) = self.constrained(index, self.vectors[index]);
-            let rounded = rounded_offsets(&offsets, &self.signs[index]);
-            let vector = combine(&self.spans[index], &rounded.map(f32::from));
-            lengths.push(vector.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>().sqrt());
-            directions.push(rounded);
+            let offsets = balanced(std::array::from_fn(|i| fluxes[index][i] * f32::from(signs[i])));
+            directions[index] = rounded_offsets(&offsets, &signs);
+            let vector = combine(&self.spans[index], &directions[index].map(f32::from));
+            lengths[index] = vector.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>().sqrt();
         }
         (directions, lengths)
+    }
+
+    /// The flux through each facet that the vectors want, not below a fraction of what passes the cells.
+    fn wanted_fluxes(&self) -> Vec<[f32; K]> {
+        let own: Vec<[f32; K]> = (0..self.signs.len())
+            .map(|index| {
+                let density = self.densities[index].max(f32::MIN_POSITIVE);
+                let fluxes = facet_fluxes::<K>(&self.spans[index], self.vectors[index]);
+                let passing = fluxes.iter().map(|f| f.abs()).sum::<f32>() / 2.0;
+                std::array::from_fn(|i| {
+                    let along = fluxes[i] * f32::from(self.signs[index][i]);
+                    (along.max(LEAST_FRACTION * passing) * density).clamp(1e-30, 1e30)
+                })
+            })
+            .collect();
+        (0..own.len())
+            .map(|index| {
+                std::array::from_fn(|i| {
+                    let far = self.adjacency.across(CellId::new(index), i);
+                    match far {
+                        far if far.is_some() && self.skip != Some(far.cell()) => {
+                            (own[index][i] + own[far.cell().index()][far.opposite()]) / 2.0
+                        }
+                        _ => own[index][i],
+                    }
+                })
+            })
+            .collect()
     }
 }
 
@@ -318,6 +359,17 @@ fn offsets<const K: usize>(spans: &[[f32; 3]; 3], vector: [f32; 3]) -> [f32; K] 
     }
     offsets[0] = -offsets[1..].iter().sum::<f32>();
     offsets
+}
+
+/// Flux of a vector into the cell through each facet (twice the measure times the normal component).
+fn facet_fluxes<const K: usize>(spans: &[[f32; 3]; 3], vector: [f32; 3]) -> [f32; K] {
+    let offsets = offsets::<K>(spans, vector);
+    if K == 4 {
+        return offsets;
+    }
+    let normal = cross(spans[0], spans[1]);
+    let size = dot(normal, normal).sqrt().max(f32::MIN_POSITIVE);
+    offsets.map(|o| 2.0 * o / size)
 }
 
 /// Scales the positive offsets to add up to 1 and the negative ones to -1.

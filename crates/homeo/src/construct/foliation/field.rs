@@ -1,6 +1,6 @@
 //! The harmonic field that the front follows, and its weights.
 
-use homeo_core::mesh::{CELL_EDGES, CellId, EdgeIndex, SimplicialComplex, VertexId};
+use homeo_core::mesh::{CELL_EDGES, CellId, EdgeIndex, Facet, SimplicialComplex, VertexId};
 
 use crate::linear::GraphLaplacian;
 
@@ -62,22 +62,91 @@ pub(super) fn cotangent_weights<const K: usize>(
     weights
 }
 
-/// Rank of each cell by a field that is harmonic, 0 at `source` and 1 at `sink` vertices.
+/// A field at the vertices that grows along the flow and is harmonic inside.
 ///
-/// The cell's value is the mean of its vertices. Ties go by cell number.
-pub(super) fn harmonic_rank<const K: usize>(
+/// Leaves come in through the source facets and go out through the sink facets with a flux in
+/// proportion to the facets' size, so that every part of both regions gets its share; a centre takes up the rest.
+/// (Constant values on the regions, as the source paper has it, send next to no leaves to the far end
+/// of a long region.)
+pub(super) fn guiding_field<const K: usize>(
     complex: &SimplicialComplex<K>,
     positions: &[Vector],
     edges: &EdgeIndex<K>,
-    source: &[VertexId],
-    sink: &[VertexId],
+    source: &[Facet],
+    sink: &[Facet],
+    centre: Option<CellId>,
 ) -> Vec<f64> {
     let mut fixed = vec![None; complex.vertex_count()];
-    source.iter().for_each(|v| fixed[v.index()] = Some(0.0));
-    sink.iter().for_each(|v| fixed[v.index()] = Some(1.0));
+    let mut load = vec![0.0; complex.vertex_count()];
+    for (facets, sign) in [(source, -1.0), (sink, 1.0)] {
+        let total: f64 = facets.iter().map(|&f| facet_measure(complex, f, positions)).sum();
+        for &facet in facets {
+            let share =
+                sign * facet_measure(complex, facet, positions) / (total.max(f64::MIN_POSITIVE) * (K - 1) as f64);
+            complex.facet_vertices(facet.cell(), facet.opposite()).for_each(|v| load[v.index()] += share);
+        }
+    }
+    // Something must be fixed: the field is known up to a constant.
+    match (centre, source.first()) {
+        (Some(cell), _) => complex.cell(cell).iter().for_each(|v| fixed[v.index()] = Some(0.0)),
+        (None, Some(facet)) => {
+            complex.facet_vertices(facet.cell(), facet.opposite()).take(1).for_each(|v| fixed[v.index()] = Some(0.0));
+        }
+        (None, None) => {}
+    }
     let weights = cotangent_weights(complex, positions, edges);
     let laplacian = GraphLaplacian::new(complex.vertex_count(), edges.ends(), &weights);
-    let field = laplacian.harmonic_iterative(&fixed, 1e-8);
+    laplacian.solve_iterative(&fixed, &load, 1e-7)
+}
+
+/// Length or area of a facet.
+fn facet_measure<const K: usize>(complex: &SimplicialComplex<K>, facet: Facet, positions: &[Vector]) -> f64 {
+    let mut corners = [[0.0; 3]; K];
+    for (corner, vertex) in corners.iter_mut().zip(complex.facet_vertices(facet.cell(), facet.opposite())) {
+        *corner = positions[vertex.index()];
+    }
+    let first = difference(corners[1], corners[0]);
+    let span = if K == 4 { cross(first, difference(corners[2], corners[0])).map(|x| x / 2.0) } else { first };
+    dot(span, span).sqrt()
+}
+
+/// The gradient of a field in each cell, smoothed: the mean over the cell's vertices of the mean over
+/// the cells around each (by measure), which slivers cannot spoil.
+pub(super) fn smoothed_gradients<const K: usize>(
+    complex: &SimplicialComplex<K>,
+    positions: &[Vector],
+    field: &[f64],
+) -> Vec<[f32; 3]> {
+    let mut sums = vec![([0.0; 3], 0.0); complex.vertex_count()];
+    for cell in complex.cells() {
+        let (gradients, measure) = gradients(cell.map(|v| positions[v.index()]));
+        let weighted: Vector =
+            std::array::from_fn(|axis| (0..K).map(|i| measure * field[cell[i].index()] * gradients[i][axis]).sum());
+        if !weighted.iter().all(|x| x.is_finite()) {
+            continue;
+        }
+        for vertex in cell {
+            let (sum, total) = &mut sums[vertex.index()];
+            (0..3).for_each(|axis| sum[axis] += weighted[axis]);
+            *total += measure.abs();
+        }
+    }
+    let mean = |v: VertexId| {
+        let (sum, total) = sums[v.index()];
+        if total > 0.0 { sum.map(|x| x / total) } else { [0.0; 3] }
+    };
+    complex
+        .cells()
+        .iter()
+        .map(|cell| {
+            let means = cell.map(mean);
+            std::array::from_fn(|axis| (means.iter().map(|m| m[axis]).sum::<f64>() / K as f64) as f32)
+        })
+        .collect()
+}
+
+/// Rank of each cell by the mean of a field over its vertices.
+pub(super) fn cell_means<const K: usize>(complex: &SimplicialComplex<K>, field: &[f64]) -> Vec<f64> {
     complex.cells().iter().map(|cell| cell.iter().map(|v| field[v.index()]).sum()).collect()
 }
 

@@ -15,7 +15,7 @@
 //! first cell removed has a parallel facet there itself. (A front that reaches the boundary from
 //! inside would cut the remaining cells in two; the later conditions then never hold.)
 
-use homeo_core::mesh::{Adjacency, CELL_EDGES, CellId, EdgeIndex, SimplicialComplex, VertexId};
+use homeo_core::mesh::{Adjacency, CELL_EDGES, CellId, EdgeIndex, SimplicialComplex};
 
 /// What surrounds the cells: which boundary facets are source or sink, and what is centre.
 #[derive(Clone, Debug)]
@@ -195,7 +195,7 @@ impl<'a, const K: usize> Front<'a, K> {
             debug_assert!(!(is_source && is_sink), "a facet is source or sink, not both");
             let is_parallel = !is_source && !is_sink;
             self.parallel[cell] |= if is_parallel { bit } else { 0 };
-            let mut mark = |stars: &mut Stars, in_sink: &mut [bool], index: usize| {
+            let mark = |stars: &mut Stars, in_sink: &mut [bool], index: usize| {
                 stars.touched[index] |= is_source;
                 stars.halved[index] |= is_parallel;
                 in_sink[index] |= is_sink;
@@ -364,19 +364,6 @@ pub fn positions_in(order: &[CellId], cell_count: usize) -> Vec<u32> {
         positions[cell.index()] = position as u32;
     }
     positions
-}
-
-/// The vertices of the facets that a mask per cell marks.
-pub fn marked_vertices<const K: usize>(complex: &SimplicialComplex<K>, mask: &[u8]) -> Vec<VertexId> {
-    let mut marked = vec![false; complex.vertex_count()];
-    for (cell, &bits) in mask.iter().enumerate().filter(|&(_, &bits)| bits != 0) {
-        for i in (0..K).filter(|i| bits >> i & 1 == 1) {
-            for vertex in complex.facet_vertices(CellId::new(cell), i) {
-                marked[vertex.index()] = true;
-            }
-        }
-    }
-    (0..marked.len()).filter(|&v| marked[v]).map(VertexId::new).collect()
 }
 
 #[cfg(test)]
