@@ -1,82 +1,94 @@
 //! What the map looks like: the stretch of the linear interpolation between images of vertices.
 //!
-//! The interpolation is linear in each cell of the foliated mesh. It is a picture of the map, not the
-//! map: numbers from here are called sampled.
+//! The interpolation is linear in each cell of the source. It is a picture of the map, not the map:
+//! numbers from here are called sampled.
 
 use homeo::certificate::FoliationMap;
 use homeo::map::{Bijection, Foliation, distortions};
+use homeo_core::mesh::VertexId;
 use serde_json::{Value, json};
 
-/// How many centroids are evaluated for the bound of the error.
-const CENTROIDS: usize = 1000;
+/// How many cells are tried where not all are asked for.
+const CELLS: usize = 2000;
 
-/// Images and stretches.
+/// Stretches and errors at some cells.
 pub struct Sampled {
-    /// Images of the source's vertices; NaN where a vertex lies in no cell.
-    pub images: Vec<[f64; 3]>,
-    /// For each cell of the source the ratio of the largest to the smallest singular value.
-    pub source_stretch: Vec<f64>,
-    /// The same for the cells of the foliated mesh, in ascending order.
-    sorted_stretch: Vec<f64>,
-    /// The largest error bound of an image, at the centroids that were tried.
+    /// Ratio of the largest to the smallest singular value, in ascending order.
+    stretch: Vec<f64>,
+    /// The largest error bound of an image.
     pub max_radius: f64,
-    /// Vertices without an image.
-    pub missing: usize,
 }
 
-/// Evaluates the map at all vertices and at some centroids.
+/// Images of all vertices, and stretches of all cells of the source.
+pub struct Images {
+    /// NaN where a vertex lies in no cell.
+    pub images: Vec<[f64; 3]>,
+    /// One for each cell.
+    pub stretch: Vec<f64>,
+}
+
+/// Evaluates the map at the corners of some cells.
 pub fn sample(map: &FoliationMap) -> Sampled {
     match map {
-        FoliationMap::Surface(map) => sample_foliation(map),
-        FoliationMap::Volume(map) => sample_foliation(map),
+        FoliationMap::Surface(map) => sample_cells(map),
+        FoliationMap::Volume(map) => sample_cells(map),
     }
 }
 
-fn sample_foliation<const K: usize>(map: &Foliation<K>) -> Sampled
+fn sample_cells<const K: usize>(map: &Foliation<K>) -> Sampled
 where
     Foliation<K>: Bijection,
 {
-    let (source, mesh) = (map.source(), &map.parts().mesh);
-    let images = map.vertex_images();
-    let mut sorted_stretch = distortions(mesh.complex().cells(), mesh.positions(), &images);
-    sorted_stretch.sort_by(f64::total_cmp);
-    let source_stretch = distortions(source.complex().cells(), source.positions(), &images);
-    let cells = source.complex().cells();
-    let centroids: Vec<[f64; 3]> = cells
-        .iter()
-        .step_by((cells.len() / CENTROIDS).max(1))
-        .map(|cell| {
-            std::array::from_fn(|axis| {
-                cell.iter().map(|v| source.positions()[v.index()][axis]).sum::<f64>() / cell.len() as f64
-            })
-        })
-        .collect();
-    let max_radius = map.forward_batch(&centroids).iter().flatten().map(|a| a.radius).fold(0.0, f64::max);
-    let images = images[..source.positions().len()].to_vec();
-    let missing = images.iter().filter(|p| p[0].is_nan()).count();
-    Sampled { images, source_stretch, sorted_stretch, max_radius, missing }
+    let cells = map.source().complex().cells();
+    let chosen = cells.iter().step_by(cells.len().div_ceil(CELLS).max(1));
+    let mut numbers: Vec<VertexId> = chosen.clone().flatten().copied().collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let positions: Vec<[f64; 3]> = numbers.iter().map(|v| map.source().positions()[v.index()]).collect();
+    let answers = map.forward_batch(&positions);
+    let images: Vec<[f64; 3]> = answers.iter().map(|a| a.as_ref().map_or([f64::NAN; 3], |a| a.point)).collect();
+    let renumbered: Vec<[VertexId; K]> =
+        chosen.map(|cell| cell.map(|v| VertexId::new(numbers.binary_search(&v).unwrap_or_default()))).collect();
+    let mut stretch = distortions(&renumbered, &positions, &images);
+    stretch.sort_by(f64::total_cmp);
+    Sampled { stretch, max_radius: answers.iter().flatten().map(|a| a.radius).fold(0.0, f64::max) }
+}
+
+/// Evaluates the map at all vertices.
+pub fn all(map: &FoliationMap) -> Images {
+    match map {
+        FoliationMap::Surface(map) => all_cells(map),
+        FoliationMap::Volume(map) => all_cells(map),
+    }
+}
+
+fn all_cells<const K: usize>(map: &Foliation<K>) -> Images {
+    let source = map.source();
+    let mut images = map.vertex_images();
+    images.truncate(source.positions().len());
+    let stretch = distortions(source.complex().cells(), source.positions(), &images);
+    Images { images, stretch }
 }
 
 impl Sampled {
     /// The `sampled` part of `quality`.
     pub fn quality(&self) -> Value {
         json!({
-            "what": "linear interpolation between the images of the vertices of the foliated mesh",
-            "cells": self.sorted_stretch.len(),
+            "what": "linear interpolation between the images of the corners of some cells of the source",
+            "cells": self.stretch.len(),
             "stretch_ratio": {
                 "median": self.quantile(0.5), "p90": self.quantile(0.9), "p99": self.quantile(0.99),
                 "max": self.quantile(1.0),
             },
             "max_radius": self.max_radius,
-            "vertices_in_no_cell": self.missing,
         })
     }
 
     /// A quantile of the stretch.
     pub fn quantile(&self, share: f64) -> f64 {
-        match self.sorted_stretch.len() {
+        match self.stretch.len() {
             0 => f64::NAN,
-            n => self.sorted_stretch[((n - 1) as f64 * share).round() as usize],
+            n => self.stretch[((n - 1) as f64 * share).round() as usize],
         }
     }
 }

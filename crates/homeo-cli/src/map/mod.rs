@@ -55,8 +55,11 @@ pub fn run(session: &Session, options: &MapArgs, outputs: &mut Outputs) -> Resul
     let sampled = sampled::sample(&map);
     session.check()?;
     if let Some(path) = &options.vtu {
+        session.stage("images");
+        let images = sampled::all(&map);
+        session.check()?;
         session.stage("write");
-        vtu::stage(session, path, &mesh.file, &sampled, outputs)?;
+        vtu::stage(session, path, &mesh.file, &images, outputs)?;
     }
     if let Some(path) = &options.report {
         session.stage("report");

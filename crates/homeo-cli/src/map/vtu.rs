@@ -7,7 +7,7 @@ use homeo_core::io::{Attribute, Element, Format, MeshFile, Values, WriteOptions,
 
 use crate::failure::{Failure, Result};
 use crate::outputs::Outputs;
-use crate::sampled::Sampled;
+use crate::sampled::Images;
 use crate::session::Session;
 
 /// Refuses names whose format holds no fields.
@@ -25,7 +25,7 @@ pub fn check_name(path: &Path) -> Result<()> {
 ///
 /// # Errors
 /// When it cannot be written.
-pub fn stage(session: &Session, path: &Path, mesh: &MeshFile, sampled: &Sampled, outputs: &mut Outputs) -> Result<()> {
+pub fn stage(session: &Session, path: &Path, mesh: &MeshFile, images: &Images, outputs: &mut Outputs) -> Result<()> {
     let format = Format::of_path(path).unwrap_or(Format::Vtu);
     let mut mesh = mesh.clone();
     mesh.losses.clear();
@@ -36,13 +36,13 @@ pub fn stage(session: &Session, path: &Path, mesh: &MeshFile, sampled: &Sampled,
         name: name("image", Element::Vertex),
         element: Element::Vertex,
         components: 3,
-        values: Values::F64(sampled.images.iter().flatten().copied().collect()),
+        values: Values::F64(images.images.iter().flatten().copied().collect()),
     };
     let distortion = Attribute {
         name: name("distortion", cells),
         element: cells,
         components: 1,
-        values: Values::F64(sampled.source_stretch.clone()),
+        values: Values::F64(images.stretch.clone()),
     };
     mesh.attributes.extend([image, distortion]);
     let mut losses = Vec::new();
