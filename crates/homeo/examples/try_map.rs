@@ -45,6 +45,7 @@ where
             return;
         }
     };
+    let map = map.with_accuracy(std::env::var("ACC").map_or(1e-8, |a| a.parse().unwrap()));
     println!("built {:.3} {info:?}", clock.elapsed().as_secs_f64());
     let clock = Instant::now();
     let mut worst_float = 0.0f64;
@@ -98,6 +99,18 @@ where
         }
     }
     trips.sort_by(f64::total_cmp);
+    if let Ok(n) = std::env::var("BATCH") {
+        let n: usize = n.parse().unwrap();
+        let pts: Vec<[f64; 3]> = (0..n).map(|_| { let cell = source.complex().cell(homeo_core::mesh::CellId::new(random() as usize % source.complex().cell_count())); let w: [f64; K] = std::array::from_fn(|_| random() as f64 + 1.0); let sum: f64 = w.iter().sum(); std::array::from_fn(|a| (0..K).map(|k| w[k] / sum * source.positions()[cell[k].index()][a]).sum()) }).collect();
+        let t = Instant::now();
+        let images: Vec<_> = pts.iter().map(|&p| map.forward(p).unwrap()).collect();
+        let s = t.elapsed().as_secs_f64();
+        let mut radii: Vec<f64> = images.iter().map(|i| i.radius).collect();
+        radii.sort_by(f64::total_cmp);
+        println!("radius 10% {:.1e} 50% {:.1e} 90% {:.1e} 99% {:.1e}", radii[n / 10], radii[n / 2], radii[n * 9 / 10], radii[n * 99 / 100]);
+        let exact = images.iter().filter(|i| i.radius < 1e-15 && i.radius > 0.0).count();
+        println!("batch {n}: {:.2} us/point, {:.1} ns/cell, exact fallbacks about {exact}", s * 1e6 / n as f64, s * 1e9 / n as f64 / (cells_crossed as f64 / points as f64));
+    }
     let _ = VertexId::new(0);
     println!(
         "points {points} {:.3}s cells/leaf {:.1} exact fwd {:.2} us/cell inv {:.2} us/cell float {:.1} ns/cell; radius {worst_float:.1e} off {worst_inverse:.1e}; trip median {:.1e} worst {worst_round:.1e}",

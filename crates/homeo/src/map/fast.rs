@@ -17,10 +17,11 @@ use super::locate::FloatLocation;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Undecided;
 
-/// Bound of the rounding of one step, in barycentric coordinates (all are at most 1).
-const STEP_ROUNDING: f64 = 12.0 * f64::EPSILON;
-/// The box of errors is rebuilt when the columns of the derivative are this close to parallel.
-const NEARLY_PARALLEL: f64 = 1e-5;
+/// Bound of the rounding of one step, in barycentric coordinates (all are at most 1): a quotient, a
+/// product and a difference for each weight, and the sum that normalizes them, half an ulp each.
+const STEP_ROUNDING: f64 = 5.0 * f64::EPSILON;
+/// The box of errors is turned when the columns of the derivative are this close to parallel.
+const NEARLY_PARALLEL: f64 = 0.05;
 /// Errors beyond this mean that nothing is known any more.
 const LARGEST_ERROR: f64 = 0.125;
 
@@ -199,15 +200,41 @@ impl<const K: usize> FastLeaf<K> {
             let determinant = (u[0] * v[1] - u[1] * v[0]).abs();
             let size = (u[0].abs() + v[0].abs()) * (u[1].abs() + v[1].abs());
             if !(1e-150..1e150).contains(&determinant) || determinant < NEARLY_PARALLEL * size {
-                let errors = std::array::from_fn(|j| self.error(j));
-                return self.rebuild(i, errors);
+                self.turn_box(i, p, q);
+                return self.still_known();
             }
             let scale = 1.001 * STEP_ROUNDING / determinant;
             self.reach[0] += scale * (u[1].abs() + v[1].abs());
             self.reach[1] += scale * (u[0].abs() + v[0].abs());
         }
-        let known = (0..K).all(|j| self.error(j) < LARGEST_ERROR);
-        if known { Ok(()) } else { Err(Undecided) }
+        self.still_known()
+    }
+
+    fn still_known(&self) -> Result<(), Undecided> {
+        if (0..K).all(|j| self.error(j) < LARGEST_ERROR) { Ok(()) } else { Err(Undecided) }
+    }
+
+    /// Encloses the box of errors in one with perpendicular sides, the first along its longest side
+    /// (the wrapping of Lohner's QR variant: a thin box stays thin).
+    fn turn_box(&mut self, i: usize, p: usize, q: usize) {
+        let side = |k: usize| [self.derivative[p][k] * self.reach[k], self.derivative[q][k] * self.reach[k]];
+        let sides = [side(0), side(1)];
+        let length = |s: [f64; 2]| s[0].hypot(s[1]);
+        let longest = if length(sides[0]) >= length(sides[1]) { sides[0] } else { sides[1] };
+        let size = length(longest);
+        let along = if size > 0.0 { [longest[0] / size, longest[1] / size] } else { [1.0, 0.0] };
+        let across = [-along[1], along[0]];
+        let extent = |axis: [f64; 2]| {
+            sides.iter().map(|s| (s[0] * axis[0] + s[1] * axis[1]).abs()).sum::<f64>()
+                + 8.0 * f64::EPSILON * (length(sides[0]) + length(sides[1]))
+                + 2.0 * STEP_ROUNDING
+        };
+        self.reach = [extent(along), extent(across)];
+        let r = 6 - i - p - q;
+        self.derivative = [[0.0; 2]; K];
+        self.derivative[p] = [along[0], across[0]];
+        self.derivative[q] = [along[1], across[1]];
+        self.derivative[r] = [-(along[0] + along[1]), -(across[0] + across[1])];
     }
 
     /// Crosses facet `i`; gives the facet when the leaf ends there.

@@ -36,8 +36,9 @@ impl<const K: usize> Foliation<K> {
             Located::Exact(at) => at,
             Located::Float(at) => {
                 if !self.is_centre(at.cell) {
-                    if let Ok(enclosed) = self.fast_image(&at) {
-                        return Ok(enclosed);
+                    match self.fast_image(&at) {
+                        Ok(enclosed) if enclosed.radius <= self.accuracy() => return Ok(enclosed),
+                        _ => {}
                     }
                 }
                 self.exactly(&at, point)?
@@ -161,8 +162,9 @@ impl<const K: usize> Foliation<K> {
             Target::Ball => self.fast_start_in_ball(point)?,
         };
         if let Some((at, goal)) = fast {
-            if let Ok(enclosed) = self.fast_preimage(&at, goal) {
-                return Ok(enclosed);
+            match self.fast_preimage(&at, goal) {
+                Ok(enclosed) if enclosed.radius <= self.accuracy() * self.locator.diagonal() => return Ok(enclosed),
+                _ => {}
             }
         }
         let position = self.position_exact(&self.preimage_exact(&exact)?);

@@ -8,6 +8,9 @@ use super::{Section, Target};
 use crate::input::SourceMesh;
 use crate::refine::RefinedMesh;
 
+/// Accuracy of floating-point evaluation unless asked otherwise.
+pub const DEFAULT_ACCURACY: f64 = 1e-8;
+
 /// The cell that holds the centre of a disk or ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Centre {
@@ -42,6 +45,7 @@ pub struct Foliation<const K: usize> {
     source: SourceMesh<K>,
     adjacency: Adjacency<K>,
     parts: FoliationParts<K>,
+    accuracy: f64,
     pub(super) steps: Vec<Step>,
     pub(super) locator: Locator<K>,
     pub(super) section_index: SectionIndex,
@@ -76,7 +80,24 @@ impl<const K: usize> Foliation<K> {
         let steps = parts.mesh.complex().cell_ids().map(|cell| step(&parts, &adjacency, centre, cell)).collect();
         let locator = Locator::new(&source, &parts.mesh);
         let section_index = SectionIndex::new(&parts, &adjacency);
-        Self { source, adjacency, parts, steps, locator, section_index }
+        Self { source, adjacency, parts, accuracy: DEFAULT_ACCURACY, steps, locator, section_index }
+    }
+
+    /// The same map with another accuracy of floating-point evaluation.
+    ///
+    /// Answers whose error bound exceeds `accuracy` (relative to the size of the target, or of the
+    /// mesh's box for the inverse) are computed exactly instead, which takes some hundred times longer.
+    /// Bounds are worst cases: true errors are usually a thousand times smaller. Not finite or
+    /// negative values count as 0: everything exactly.
+    #[must_use]
+    pub fn with_accuracy(mut self, accuracy: f64) -> Self {
+        self.accuracy = if accuracy >= 0.0 { accuracy } else { 0.0 };
+        self
+    }
+
+    /// See [`with_accuracy`](Self::with_accuracy).
+    pub(super) fn accuracy(&self) -> f64 {
+        self.accuracy
     }
 
     /// The mesh that is mapped.

@@ -64,6 +64,11 @@ impl<const K: usize> Locator<K> {
         Self { tree: Tree::new(&boxes), diagonal, first_child }
     }
 
+    /// Diagonal of the source's box.
+    pub fn diagonal(&self) -> f64 {
+        self.diagonal
+    }
+
     fn children(&self, cell: CellId) -> impl ExactSizeIterator<Item = CellId> + use<K> {
         (self.first_child[cell.index()] as usize..self.first_child[cell.index() + 1] as usize).map(CellId::new)
     }

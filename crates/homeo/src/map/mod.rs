@@ -13,7 +13,7 @@ mod sample;
 mod section;
 mod target;
 
-pub use foliation::{Centre, Foliation, FoliationParts};
+pub use foliation::{Centre, DEFAULT_ACCURACY, Foliation, FoliationParts};
 pub use sample::{LeafPolyline, distortions};
 pub use section::Section;
 pub use target::Target;
