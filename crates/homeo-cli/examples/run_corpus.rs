@@ -68,7 +68,7 @@ impl Runner {
         }
         let clock = Instant::now();
         let input = path.display().to_string();
-        let info = self.homeo(&["info", &input]);
+        let info = self.homeo(&["info", &input, "--intersections"]);
         let kind = info["kind"].as_str().unwrap_or_default();
         let targets: &[&str] = match (kind, info["ball"] == false, info["disk"] == true) {
             ("tetrahedra", false, _) => &["cube", "ball"],
@@ -108,8 +108,10 @@ impl Runner {
         let mut record = json!({"target": target, "map": made});
         if made["exit"] == 0 {
             record["verify"] = self.homeo(&["verify", &map, "--source", input]);
-            if std::fs::write(&points, target_points(target)).is_ok() {
-                record["float"] = self.homeo(&["eval", &map, "--points", &points, "--inverse", "-o", &there]);
+            if std::fs::write(&points, target_points(target, true)).is_ok() {
+                if std::fs::write(&back, target_points(target, false)).is_ok() {
+                    record["float"] = self.homeo(&["eval", &map, "--points", &back, "--inverse", "-o", &there]);
+                }
                 record["inverse"] =
                     self.homeo(&["eval", &map, "--points", &points, "--inverse", "--exact", "-o", &there]);
                 record["forward"] = self.homeo(&["eval", &map, "--points", &there, "--exact", "-o", &back]);
@@ -124,8 +126,8 @@ impl Runner {
     }
 }
 
-/// Points inside the exact target, as reduced fractions, always the same.
-fn target_points(target: &str) -> String {
+/// Points inside the exact target, always the same: reduced fractions, or decimals near them.
+fn target_points(target: &str, exact: bool) -> String {
     let mut state = 7u64;
     let mut random = |below: u64| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -142,7 +144,11 @@ fn target_points(target: &str) -> String {
             // Inside the ball of radius 1/(2 sqrt 3) about the origin, which the tetrahedron holds.
             _ => (0..3).map(|_| random(321) as i64 - 160).collect(),
         };
-        let fraction = |p: &i64| if *p == 0 { "0".to_owned() } else { format!("{p}/{q}") };
+        let fraction = |p: &i64| match (*p, exact) {
+            (0, true) => "0".to_owned(),
+            (p, true) => format!("{p}/{q}"),
+            (p, false) => format!("{:?}", p as f64 / q as f64),
+        };
         let _ = writeln!(text, "{}", row.iter().map(fraction).collect::<Vec<_>>().join(","));
     }
     text

@@ -17,7 +17,7 @@ use crate::outputs::{Outputs, check_target};
 use crate::proof;
 use crate::sampled::{self, Sampled};
 use crate::session::Session;
-use crate::text::{Lines, stages};
+use crate::text::{Lines, ratio, stages};
 
 /// Writes the page of a map file.
 pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Result<Answer> {
@@ -88,8 +88,8 @@ fn facts(map: &FoliationMap, sampled: &Sampled) -> Vec<(String, String)> {
         fact("vertices", vertices.to_string()),
         fact(what, cells.to_string()),
         fact("cells of the foliated mesh", refined.to_string()),
-        fact("stretch, median (sampled)", format!("{:.3}", sampled.quantile(0.5))),
-        fact("stretch, largest (sampled)", format!("{:.3e}", sampled.quantile(1.0))),
+        fact("stretch, median (sampled)", ratio(sampled.quantile(0.5))),
+        fact("stretch, largest (sampled)", ratio(sampled.quantile(1.0))),
         fact("error of floating-point images", format!("at most {:.1e}", sampled.max_radius)),
     ]
 }

@@ -13,8 +13,10 @@ const CELLS: usize = 2000;
 
 /// Stretches and errors at some cells.
 pub struct Sampled {
-    /// Ratio of the largest to the smallest singular value, in ascending order.
+    /// Ratio of the largest to the smallest singular value, in ascending order; finite.
     stretch: Vec<f64>,
+    /// Cells that the interpolation makes flat: their corners go to one side of the target, say.
+    pub flat: usize,
     /// The largest error bound of an image.
     pub max_radius: f64,
 }
@@ -50,8 +52,14 @@ where
     let renumbered: Vec<[VertexId; K]> =
         chosen.map(|cell| cell.map(|v| VertexId::new(numbers.binary_search(&v).unwrap_or_default()))).collect();
     let mut stretch = distortions(&renumbered, &positions, &images);
+    let tried = stretch.len();
+    stretch.retain(|ratio| ratio.is_finite());
     stretch.sort_by(f64::total_cmp);
-    Sampled { stretch, max_radius: answers.iter().flatten().map(|a| a.radius).fold(0.0, f64::max) }
+    Sampled {
+        flat: tried - stretch.len(),
+        stretch,
+        max_radius: answers.iter().flatten().map(|a| a.radius).fold(0.0, f64::max),
+    }
 }
 
 /// Evaluates the map at all vertices.
@@ -75,7 +83,8 @@ impl Sampled {
     pub fn quality(&self) -> Value {
         json!({
             "what": "linear interpolation between the images of the corners of some cells of the source",
-            "cells": self.stretch.len(),
+            "cells": self.stretch.len() + self.flat,
+            "flat_cells": self.flat,
             "stretch_ratio": {
                 "median": self.quantile(0.5), "p90": self.quantile(0.9), "p99": self.quantile(0.99),
                 "max": self.quantile(1.0),

@@ -35,6 +35,11 @@ pub fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
+/// A ratio in few digits.
+pub fn ratio(value: f64) -> String {
+    if value.abs() < 1e4 { format!("{value:.3}") } else { format!("{value:.2e}") }
+}
+
 /// Seconds per stage in one line, the longest first.
 pub fn stages(seconds: &[(&'static str, f64)]) -> String {
     let total = seconds.iter().find(|s| s.0 == "total").map_or(0.0, |s| s.1);

@@ -23,7 +23,7 @@ use crate::proof;
 use crate::report;
 use crate::sampled::{self, Sampled};
 use crate::session::Session;
-use crate::text::{Lines, stages};
+use crate::text::{Lines, counted, ratio, stages};
 
 pub use refuse::polygons_message;
 
@@ -193,18 +193,14 @@ fn words(
     let mut lines = Lines::default();
     let checks: u64 = claim.checked.iter().map(|c| c.1).sum();
     lines.add("certificate", format!("holds ({checks} exact checks in {} rules)", claim.checked.len()));
-    let extra = info.local_refinements + info.barycentric_refinements;
-    let refined = if extra > 0 { format!(", {extra} refinements where the front got stuck") } else { String::new() };
+    let refined = match info.local_refinements + info.barycentric_refinements {
+        0 => String::new(),
+        extra => format!(", {} where the front got stuck", counted(extra, "refinement", "refinements")),
+    };
     lines.add("cells", format!("{} after preparation{refined}", info.cells));
-    lines.add(
-        "stretch",
-        format!(
-            "median {:.3}, 99 % below {:.3e}, largest {:.3e} (sampled)",
-            sampled.quantile(0.5),
-            sampled.quantile(0.99),
-            sampled.quantile(1.0)
-        ),
-    );
+    let [median, high, largest] = [0.5, 0.99, 1.0].map(|share| ratio(sampled.quantile(share)));
+    let flat = if sampled.flat > 0 { format!("; {} flat between their corners", sampled.flat) } else { String::new() };
+    lines.add("stretch", format!("median {median}, 99 % below {high}, largest {largest} (sampled{flat})"));
     lines.add("float error", format!("at most {:.1e} (sampled)", sampled.max_radius));
     lines.add("time", stages(&session.seconds()));
     let written = [&options.output, &options.vtu, &options.report];
