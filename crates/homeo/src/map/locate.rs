@@ -8,7 +8,7 @@ use homeo_core::predicate::{Sign, orient3d};
 use homeo_core::spatial::{Aabb, Tree};
 
 use super::EvaluationError;
-use super::exact::{ExactLocation, whole};
+use super::exact::{ExactLocation, fractions, whole};
 use crate::input::SourceMesh;
 use crate::refine::RefinedMesh;
 
@@ -188,7 +188,16 @@ impl<const K: usize> Locator<K> {
             }
         });
         let (_, cell, weights) = best.ok_or(EvaluationError::OutsideSource)?;
-        Ok(self.child_of_weights(source, mesh, cell, weights))
+        if weights.contains(&0.0) {
+            // On an edge or a vertex: the point is defined by its weights.
+            return Ok(self.child_of_weights(source, mesh, cell, weights));
+        }
+        let corners = corners(source, cell);
+        let error = projection_error(&corners, point);
+        if error < USEFUL_WEIGHT_ERROR {
+            return Ok(self.child_float(source, mesh, cell, weights, [error; K], point));
+        }
+        Ok(Located::Exact(self.projected(source, mesh, cell, &weights, point)))
     }
 
     /// The child that holds a point given by weights, which are taken for exact ones from here on.
@@ -234,9 +243,41 @@ impl<const K: usize> Locator<K> {
                 return Located::Float(FloatLocation { cell: child, weights, errors, is_exact: false });
             }
         }
-        let exact = exact_weights(&corners(source, cell), &rational_point(point))
-            .unwrap_or_else(|| panic!("the exact predicate placed the point in cell {cell} (please report this)"));
-        Located::Exact(self.child_exact(source, mesh, cell, &exact))
+        Located::Exact(self.projected(source, mesh, cell, &weights, point))
+    }
+
+    /// The exact location of a point (of its projection, on a surface) in a source cell that is known
+    /// to hold it; where rounding put a projection just outside, its clamped weights decide.
+    fn projected(
+        &self,
+        source: &SourceMesh<K>,
+        mesh: &RefinedMesh<K>,
+        cell: CellId,
+        weights: &[f64; K],
+        point: [f64; 3],
+    ) -> ExactLocation<K> {
+        let exact = exact_projection(&corners(source, cell), &rational_point(point))
+            .unwrap_or_else(|| whole(&clamp(*weights).map(|w| Rational::from_f64(w).unwrap_or(Rational::ZERO))));
+        self.child_exact(source, mesh, cell, &exact)
+    }
+
+    /// The exact location that a floating-point one stands for.
+    pub fn exactly(
+        &self,
+        source: &SourceMesh<K>,
+        mesh: &RefinedMesh<K>,
+        at: &FloatLocation<K>,
+        point: [f64; 3],
+    ) -> ExactLocation<K> {
+        if at.is_exact {
+            let weights = at.weights.map(|w| Rational::from_f64(w).unwrap_or(Rational::ZERO));
+            return ExactLocation { cell: at.cell, weights: whole(&weights) };
+        }
+        let cell = mesh.parents()[at.cell.index()];
+        let frame = ChildFrame::new(mesh, source.complex().cell(cell), at.cell);
+        let inner = at.weights.map(|w| Rational::from_f64(w.max(0.0)).unwrap_or(Rational::ZERO));
+        let outer = fractions(&frame.outer_exact(&whole(&inner))).map(|w| w.to_f64());
+        self.projected(source, mesh, cell, &outer, point)
     }
 
     /// The source weights of an exact location, with the source cell that they refer to.
@@ -396,8 +437,29 @@ fn exact_dot(a: &ExactVector, b: &ExactVector) -> Rational {
     &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
 }
 
+/// Exact weights of the projection of a rational point on a triangle's plane (of the point itself, for
+/// a tetrahedron), up to a positive factor; `None` when it lies outside.
+fn exact_projection<const K: usize>(corners: &[[f64; 3]; K], point: &[Rational; 3]) -> Option<[IBig; K]> {
+    exact_barycentric(corners, point, OffPlane::Project)
+}
+
+/// What becomes of a point that is not in a triangle's plane.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum OffPlane {
+    Project,
+    Refuse,
+}
+
 /// Barycentric weights of a rational point in a cell, up to a positive factor; `None` when outside.
 fn exact_weights<const K: usize>(corners: &[[f64; 3]; K], point: &[Rational; 3]) -> Option<[IBig; K]> {
+    exact_barycentric(corners, point, OffPlane::Refuse)
+}
+
+fn exact_barycentric<const K: usize>(
+    corners: &[[f64; 3]; K],
+    point: &[Rational; 3],
+    off_plane: OffPlane,
+) -> Option<[IBig; K]> {
     let mut exact = Vec::with_capacity(K);
     for corner in corners {
         let [x, y, z] = corner.map(Rational::from_f64);
@@ -417,7 +479,7 @@ fn exact_weights<const K: usize>(corners: &[[f64; 3]; K], point: &[Rational; 3])
     let spans = [1, 2].map(|i| minus(&exact[i], &exact[0]));
     let offset = minus(point, &exact[0]);
     let normal = exact_cross(&spans[0], &spans[1]);
-    if exact_dot(&normal, &offset).sign() != Sign::Zero {
+    if off_plane == OffPlane::Refuse && exact_dot(&normal, &offset).sign() != Sign::Zero {
         return None;
     }
     weights[1] = exact_dot(&exact_cross(&offset, &spans[1]), &normal);
@@ -497,6 +559,25 @@ fn combination<const K: usize>(corners: &[[f64; 3]; K], weights: &[f64; K]) -> [
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Weights with a larger error than this are computed exactly.
+const USEFUL_WEIGHT_ERROR: f64 = 1e-10;
+
+/// Bound of the errors of the weights that [`nearest_weights`] gives inside a triangle.
+fn projection_error<const K: usize>(corners: &[[f64; 3]; K], point: [f64; 3]) -> f64 {
+    let minus = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (u, v, p) = (minus(corners[1], corners[0]), minus(corners[2], corners[0]), minus(point, corners[0]));
+    let (uu, uv, vv, pp) = (dot(u, u), dot(u, v), dot(v, v), dot(p, p));
+    let (size_u, size_v, size_p) = (uu.sqrt(), vv.sqrt(), pp.sqrt());
+    let determinant = uu * vv - uv * uv;
+    let rounding = 16.0 * f64::EPSILON;
+    let determinant_error = 2.0 * rounding * uu * vv;
+    let numerator_error = 2.0 * rounding * size_p * size_u.max(size_v) * size_u * size_v;
+    let safe = determinant - determinant_error;
+    // Three weights, the first being 1 minus the others.
+    if safe > 0.0 { 2.0 * (numerator_error + determinant_error) / safe + rounding } else { f64::INFINITY }
 }
 
 /// Weights of the point of a triangle that is nearest to a point (rounded).

@@ -120,7 +120,8 @@ pub fn floating_images_enclose(map: &dyn Bijection, points: &[SourcePoint]) -> R
         let Ok(image) = map.forward_exact(&exact(near)) else { continue };
         compared += 1;
         let (round, slack) = round_point(map.target(), &image);
-        let agrees = if map.target().is_radial() { is_near(&answer, round, slack) } else { encloses(&answer, &image, 0.0) };
+        let agrees =
+            if map.target().is_radial() { is_near(&answer, round, slack) } else { encloses(&answer, &image, 0.0) };
         require!(agrees, "forward at {near:?} gives {answer:?} but exactly {round:?}");
     }
     Ok(compared)
@@ -136,10 +137,17 @@ pub fn floating_preimages_enclose(map: &dyn Bijection, points: &[Point]) -> Law 
         if map.target().is_radial() {
             let there = rounded(&evaluated(map.inverse_exact(at), "inverse", at)?);
             let slack = movement(map, at, there)?;
-            require!(is_near(&answer, there, slack), "inverse at {near:?} gives {answer:?}, not {there:?} within {slack:e}");
+            require!(
+                is_near(&answer, there, slack),
+                "inverse at {near:?} gives {answer:?}, not {there:?} within {slack:e}"
+            );
         } else {
             let exactly = evaluated(map.inverse_exact(&exact(near)), "inverse", &exact(near))?;
-            require!(encloses(&answer, &exactly, 0.0), "inverse at {near:?} gives {answer:?}, not {:?}", rounded(&exactly));
+            require!(
+                encloses(&answer, &exactly, 0.0),
+                "inverse at {near:?} gives {answer:?}, not {:?}",
+                rounded(&exactly)
+            );
         }
     }
     Ok(())
@@ -191,7 +199,10 @@ pub fn outside_is_refused(map: &dyn Bijection, far: [f64; 3]) -> Law {
         let mut point = [0.0; 3];
         point[axis] = 1.0 + 1e-9;
         require!(map.inverse(point) == outside.clone(), "inverse takes {point:?}");
-        require!(map.inverse_exact(&exact(point)) == outside.clone().map(|_: Enclosed| exact(point)), "inverse takes {point:?}");
+        require!(
+            map.inverse_exact(&exact(point)) == outside.clone().map(|_: Enclosed| exact(point)),
+            "inverse takes {point:?}"
+        );
     }
     Ok(())
 }

@@ -19,7 +19,11 @@ pub struct Ends {
 ///
 /// # Errors
 /// The face and what is wrong there.
-pub fn check_order<const K: usize>(complex: &SimplicialComplex<K>, order: &[CellId], ends: &Ends) -> Result<(), String> {
+pub fn check_order<const K: usize>(
+    complex: &SimplicialComplex<K>,
+    order: &[CellId],
+    ends: &Ends,
+) -> Result<(), String> {
     for face in faces(complex, order) {
         let around: Vec<[VertexId; K]> =
             order.iter().map(|&c| complex.cell(c)).filter(|cell| face.iter().all(|v| cell.contains(v))).collect();

@@ -155,10 +155,7 @@ fn is_in_simplex(corners: &[Point], point: &Point) -> bool {
     let second = minus(&corners[2], &corners[0]);
     let normal = cross(&first, &second);
     let square = dot(&normal, &normal);
-    let weights = [
-        &dot(&cross(&offset, &second), &normal) / &square,
-        &dot(&cross(&first, &offset), &normal) / &square,
-    ];
+    let weights = [&dot(&cross(&offset, &second), &normal) / &square, &dot(&cross(&first, &offset), &normal) / &square];
     dot(&normal, &offset).is_zero() && weights.iter().all(within) && within(&(&weights[0] + &weights[1]))
 }
 
@@ -167,13 +164,9 @@ fn heights(target: Target, q: &Point) -> Vec<Rational> {
     let one = &Rational::ONE;
     let sum = |signs: [i64; 3]| -> Rational { (0..3).map(|axis| &Rational::from(signs[axis]) * &q[axis]).sum() };
     match target {
-        Target::Square | Target::Cube => {
-            q.iter().take(target.dimension()).flat_map(|x| [x.clone(), one - x]).collect()
-        }
+        Target::Square | Target::Cube => q.iter().take(target.dimension()).flat_map(|x| [x.clone(), one - x]).collect(),
         Target::Disk => [[1, 1, 0], [1, -1, 0], [-1, 1, 0], [-1, -1, 0]].map(|s| one - &sum(s)).to_vec(),
-        Target::Ball => {
-            [[1, 1, 1], [1, -1, -1], [-1, -1, 1], [-1, 1, -1]].map(|s| &rational(1, 2) + &sum(s)).to_vec()
-        }
+        Target::Ball => [[1, 1, 1], [1, -1, -1], [-1, -1, 1], [-1, 1, -1]].map(|s| &rational(1, 2) + &sum(s)).to_vec(),
     }
 }
 

@@ -86,8 +86,11 @@ fn check_gluing<const K: usize>(source: &SourceMesh<K>, mesh: &RefinedMesh<K>) -
     for facet in adjacency.boundary_facets() {
         let parent = mesh.parents()[facet.cell().index()];
         let corners = source.complex().cell(parent);
-        let rows: Vec<_> =
-            mesh.complex().facet_vertices(facet.cell(), facet.opposite()).map(|v| coordinates(mesh, corners, v)).collect();
+        let rows: Vec<_> = mesh
+            .complex()
+            .facet_vertices(facet.cell(), facet.opposite())
+            .map(|v| coordinates(mesh, corners, v))
+            .collect();
         let is_covered = |i: usize| before.across(parent, i).is_none() && rows.iter().all(|row| row[i].is_zero());
         if !(0..K).any(is_covered) {
             return Err(format!("facet {facet:?} is open inside the mesh"));

@@ -177,7 +177,11 @@ pub fn prism(disk: &Shape<3>) -> Ball {
         // Cut from the lowest vertex up, so that neighbours agree.
         let mut v = *cell;
         v.sort_unstable();
-        cells.extend([[v[0], v[1], v[2], v[2] + n], [v[0], v[1], v[1] + n, v[2] + n], [v[0], v[0] + n, v[1] + n, v[2] + n]]);
+        cells.extend([
+            [v[0], v[1], v[2], v[2] + n],
+            [v[0], v[1], v[1] + n, v[2] + n],
+            [v[0], v[0] + n, v[1] + n, v[2] + n],
+        ]);
     }
     Ball { positions, cells }
 }
@@ -196,9 +200,8 @@ pub fn random_splits(steps: usize, seed: u64) -> Ball {
         let cell = ball.cells[at];
         let weights = [0; 4].map(|_| 0.2 + random.unit());
         let sum: f64 = weights.iter().sum();
-        let point = std::array::from_fn(|axis| {
-            (0..4).map(|i| weights[i] / sum * ball.positions[cell[i] as usize][axis]).sum()
-        });
+        let point =
+            std::array::from_fn(|axis| (0..4).map(|i| weights[i] / sum * ball.positions[cell[i] as usize][axis]).sum());
         ball.positions.push(point);
         let new = ball.positions.len() as u32 - 1;
         for i in 0..4 {

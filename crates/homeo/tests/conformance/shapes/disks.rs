@@ -77,8 +77,7 @@ pub fn with_ears(mut disk: Disk, height: f64) -> Disk {
 /// Squares cut in two, diagonals in turn, where `keep` says so.
 pub fn grid_where(width: usize, height: usize, keep: impl Fn(usize, usize) -> bool) -> Disk {
     let id = |x: usize, y: usize| (y * (width + 1) + x) as u32;
-    let positions =
-        (0..=height).flat_map(|y| (0..=width).map(move |x| [x as f64, y as f64, 0.0])).collect();
+    let positions = (0..=height).flat_map(|y| (0..=width).map(move |x| [x as f64, y as f64, 0.0])).collect();
     let mut cells = Vec::new();
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).filter(|&(x, y)| keep(x, y)) {
         let [a, b, c, d] = [id(x, y), id(x + 1, y), id(x + 1, y + 1), id(x, y + 1)];
