@@ -91,6 +91,9 @@ impl<const K: usize> Foliation<K> {
     }
 }
 
+/// Below this ratio of stretches rounding leaves nothing of the smaller one: the image counts as flat.
+const FLAT: f64 = 1e-15;
+
 /// Ratio of the largest to the smallest stretch of the linear map that takes the corners of each cell
 /// to the given images; infinite where the image is flat.
 pub fn distortions<const K: usize>(
@@ -137,7 +140,7 @@ fn distortion<const K: usize>(source: [Vector; K], image: [Vector; K]) -> f64 {
         columns[i] = value.map(|x| x / coordinates[i][i]);
     }
     let values = singular_values::<K>(columns);
-    if values[1] > 0.0 { values[0] / values[1] } else { f64::INFINITY }
+    if values[1] > FLAT * values[0] { values[0] / values[1] } else { f64::INFINITY }
 }
 
 /// Largest and smallest singular value of a matrix with `K - 1` columns (Jacobi rotations on the columns).

@@ -1,0 +1,254 @@
+//! The command line as clap sees it. Nothing here is validated beyond single values.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Certified bijective maps between shapes.
+#[derive(Debug, Parser)]
+#[command(name = "homeo", version, propagate_version = true, max_term_width = 100, after_help = EXIT_CODES)]
+pub struct Arguments {
+    #[command(flatten)]
+    pub common: Common,
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+const EXIT_CODES: &str = "\
+Example:
+  homeo map testdata/meshes/spot.mesh --onto cube -o spot.homeo
+
+Exit codes: 0 done, 1 a bug in homeo, 2 wrong usage, 3 the input is not what the verb needs,
+4 no map within the limits given (nothing is written), 5 a certificate does not hold.";
+
+/// Options of every verb.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Common options")]
+pub struct Common {
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Say nothing on standard error but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more on standard error (-vv: still more)
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    pub verbose: u8,
+    /// Threads to use; results do not depend on it [default: all cores]
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Seed of everything random; the same seed gives the same bytes
+    #[arg(long, global = true, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// Write what happens to FILE, with times
+    #[arg(long, global = true, value_name = "FILE")]
+    pub log: Option<PathBuf>,
+    /// Stop after S seconds with exit code 4
+    #[arg(long, global = true, value_name = "S", value_parser = positive_seconds)]
+    pub timeout: Option<f64>,
+    /// Stop with exit code 4 when more memory is in use (bytes, or with K, M, G)
+    #[arg(long, global = true, value_name = "BYTES", value_parser = bytes)]
+    pub memory: Option<u64>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// Say everything about a mesh (or polygons, a gluing, an image) that a construction will demand
+    Info(InfoArgs),
+    /// Map a disk onto the square or disk, or a ball onto the cube or ball, one-to-one and onto
+    Map(MapArgs),
+    /// Images of points under a map, or under its inverse
+    Eval(EvalArgs),
+    /// Check the certificate of a map, independently of how it was made
+    Verify(VerifyArgs),
+    /// Show a map: one HTML page that needs nothing else
+    Report(ReportArgs),
+}
+
+impl Verb {
+    /// The verb as typed.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Info(_) => "info",
+            Self::Map(_) => "map",
+            Self::Eval(_) => "eval",
+            Self::Verify(_) => "verify",
+            Self::Report(_) => "report",
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  homeo info testdata/meshes/spot.mesh --json")]
+pub struct InfoArgs {
+    /// OBJ, PLY, STL, OFF; MSH, MEDIT, VTK, VTU; JSON facets, polygons or gluings; PNG, JPEG
+    #[arg(value_name = "MESH")]
+    pub input: PathBuf,
+    /// Look for triangles that meet where they should not (always done where a ball is to be decided)
+    #[arg(long)]
+    pub intersections: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo map testdata/meshes/spot.mesh --onto cube -o spot.homeo --vtu spot.vtu
+  homeo map testdata/meshes/face.obj --onto disk -o face.homeo
+
+The certificate is checked on the bytes that were written; only then do they get their name.
+--regions takes {\"corners\": [a, b, c, d]} for the square, {\"source\": [[a, b, c], ...],
+\"sink\": [...]} for the cube, {\"centre\": cell} for disk and ball; numbers count from 0.")]
+pub struct MapArgs {
+    /// A surface that is a disk, or a tetrahedral mesh that is a ball
+    #[arg(value_name = "MESH")]
+    pub input: PathBuf,
+    /// What to map onto
+    #[arg(long, value_enum)]
+    pub onto: TargetName,
+    /// The map file to write
+    #[arg(short, long, value_name = "MAP.homeo")]
+    pub output: Option<PathBuf>,
+    /// Write one self-contained HTML page that shows the map
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    /// Write the mesh with image coordinates and distortion as fields (.vtu or .vtk)
+    #[arg(long, value_name = "FILE")]
+    pub vtu: Option<PathBuf>,
+    /// Regions that the map must use (JSON, see below)
+    #[arg(long, value_name = "FILE.json")]
+    pub regions: Option<PathBuf>,
+    /// Refinements before giving up
+    #[arg(long, value_name = "N", default_value_t = 6)]
+    pub refinements: usize,
+    /// Runs of the front before each refinement
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = at_least_one)]
+    pub restarts: usize,
+    /// Sweeps of smoothing
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub smoothing: usize,
+    /// Cut polygons of more than three corners into triangles
+    #[arg(long)]
+    pub triangulate: bool,
+    /// Turn triangles, or reorder tetrahedra, so that all are oriented alike (reported)
+    #[arg(long)]
+    pub orient: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo map testdata/meshes/spot.mesh --onto cube -o spot.homeo
+  homeo eval spot.homeo --points testdata/points/spot.csv -o images.csv
+  homeo eval spot.homeo --points testdata/points/cube.csv --inverse --exact
+
+Points are .npy (float64, n by d) or .csv with the header x,y,z or x,y. Without -o the answer is
+CSV on standard output. --exact reads and writes rationals p/q (or decimals, which are exact); for
+disk and ball it is about their polyhedral forms, the diamond and the tetrahedron.")]
+pub struct EvalArgs {
+    /// The map
+    #[arg(value_name = "MAP")]
+    pub map: PathBuf,
+    /// The points
+    #[arg(long, value_name = "P")]
+    pub points: PathBuf,
+    /// From the target back to the mesh
+    #[arg(long)]
+    pub inverse: bool,
+    /// In rationals, without any error (CSV only)
+    #[arg(long)]
+    pub exact: bool,
+    /// What a point outside the domain gives
+    #[arg(long, value_enum, default_value_t = Outside::Error)]
+    pub outside: Outside,
+    /// The file to write (.npy or .csv)
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo map testdata/meshes/face.obj --onto square -o face.homeo
+  homeo verify face.homeo --source testdata/meshes/face.obj")]
+pub struct VerifyArgs {
+    /// The map
+    #[arg(value_name = "MAP")]
+    pub map: PathBuf,
+    /// Also require that the map is about this very mesh
+    #[arg(long, value_name = "MESH")]
+    pub source: Option<PathBuf>,
+    /// Cut the polygons of that mesh as `map --triangulate` does
+    #[arg(long, requires = "source")]
+    pub triangulate: bool,
+    /// Orient that mesh as `map --orient` does
+    #[arg(long, requires = "source")]
+    pub orient: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo map testdata/meshes/face.obj --onto disk -o face.homeo
+  homeo report face.homeo -o face.html")]
+pub struct ReportArgs {
+    /// The map
+    #[arg(value_name = "MAP")]
+    pub map: PathBuf,
+    /// The page to write
+    #[arg(short, long, value_name = "FILE.html")]
+    pub output: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TargetName {
+    Square,
+    Disk,
+    Cube,
+    Ball,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Outside {
+    /// An error that names the row
+    Error,
+    /// A row of NaN, and a count on standard error
+    Nan,
+}
+
+fn positive_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds <= 1e9 => Ok(seconds),
+        _ => Err("a number of seconds above 0 is needed".to_owned()),
+    }
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&n| n >= 1).ok_or_else(|| "a whole number from 1 on is needed".to_owned())
+}
+
+fn bytes(text: &str) -> Result<u64, String> {
+    let (digits, unit) = match text.trim_end_matches(['B', 'b', 'i']) {
+        short if short.ends_with(['K', 'k']) => (&short[..short.len() - 1], 1 << 10),
+        short if short.ends_with(['M', 'm']) => (&short[..short.len() - 1], 1 << 20),
+        short if short.ends_with(['G', 'g']) => (&short[..short.len() - 1], 1 << 30),
+        short => (short, 1u64),
+    };
+    let count = digits.parse::<u64>().ok().filter(|&n| n > 0).and_then(|n| n.checked_mul(unit));
+    count.ok_or_else(|| "a number of bytes above 0 is needed, such as 500M or 2G".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_have_units() {
+        assert_eq!(bytes("2G"), Ok(2 << 30));
+        assert_eq!(bytes("500MB"), Ok(500 << 20));
+        assert_eq!(bytes("10KiB"), Ok(10 << 10));
+        assert_eq!(bytes("12345"), Ok(12345));
+        assert!(bytes("0").is_err() && bytes("G").is_err() && bytes("-1").is_err() && bytes("99999999999G").is_err());
+    }
+}

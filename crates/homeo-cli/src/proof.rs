@@ -1,0 +1,119 @@
+//! What the independent checker says, as JSON and in words.
+
+use std::path::Path;
+
+use homeo::certificate::{FoliationMap, read_map};
+use homeo::progress::Progress;
+use homeo_verify::{Claim, Obstacle, Unreadable, Verdict, Witness, verify_bytes};
+use serde_json::{Map, Value, json};
+
+use crate::failure::{Exit, Failure, Result};
+use crate::session::Session;
+
+/// How many elements of a witness people see.
+const SHOWN: usize = 10;
+
+/// The `certificate` field where it holds.
+pub fn claim_json(claim: &Claim) -> Value {
+    let checked: Map<String, Value> = claim.checked.iter().map(|&(what, n)| (what.to_owned(), json!(n))).collect();
+    json!({
+        "kind": claim.kind, "target": claim.target, "holds": true, "checked": checked,
+        "statement": claim.statement, "limits": claim.limits, "source_sha256": claim.source_sha256,
+    })
+}
+
+/// The witness as JSON.
+pub fn witness_json(witness: &Witness) -> Value {
+    json!({
+        "rule": witness.rule, "message": witness.message, "cells": witness.cells,
+        "vertices": witness.vertices, "points": witness.points,
+    })
+}
+
+/// The witness in words.
+pub fn witness_text(witness: &Witness) -> String {
+    let list = |name: &str, numbers: &[u32]| {
+        let shown: Vec<String> = numbers.iter().take(SHOWN).map(u32::to_string).collect();
+        let more = if numbers.len() > SHOWN { ", ..." } else { "" };
+        if numbers.is_empty() { String::new() } else { format!("\n  {name}: {}{more}", shown.join(", ")) }
+    };
+    let mut text = format!("rule {}: {}", witness.rule, witness.message);
+    text.push_str(&list("cells", &witness.cells));
+    text.push_str(&list("vertices", &witness.vertices));
+    for [x, y, z] in witness.points.iter().take(SHOWN) {
+        text.push_str(&format!("\n  at {x} {y} {z}"));
+    }
+    text
+}
+
+/// The failure for a map that is refuted.
+pub fn refuted(exit: Exit, what: &str, witness: &Witness) -> Failure {
+    let mut failure = Failure::new(exit, "refuted", format!("{what}: {}", witness_text(witness)));
+    failure.fields.insert("witness".to_owned(), witness_json(witness));
+    failure.with("certificate", json!({"holds": false, "rule": witness.rule}))
+}
+
+/// The failure for a map that cannot be decided.
+pub fn undecided(obstacle: &Obstacle) -> Failure {
+    Failure::limits("undecided", format!("the certificate is undecided: {}\n  {}", obstacle.message, obstacle.remedy))
+        .with("certificate", json!({"holds": null, "obstacle": obstacle.message, "remedy": obstacle.remedy}))
+}
+
+/// The failure for bytes that are no map file.
+pub fn unreadable(path: &Path, error: &Unreadable) -> Failure {
+    Failure::input("unreadable-map", format!("{}: {error}", path.display()))
+}
+
+/// Checks a map that this program has just made: anything but a proof is a bug.
+pub fn check_own(bytes: &[u8]) -> Result<Claim> {
+    let bug = |what: String| {
+        Failure::bug(format!("the map that was made does not pass its check; nothing was written: {what}"))
+    };
+    match verify_bytes(bytes) {
+        Ok(Verdict::Certified(claim)) => Ok(claim),
+        Ok(Verdict::Refuted(witness)) => Err(bug(witness_text(&witness)).with("witness", witness_json(&witness))),
+        Ok(Verdict::Undecided(obstacle)) => Err(undecided(&obstacle)),
+        Err(error) => Err(bug(error.to_string())),
+    }
+}
+
+/// Reads the bytes of a map file.
+pub fn read_bytes(session: &Session, path: &Path) -> Result<Vec<u8>> {
+    session.stage("read");
+    session.fact("input", json!({"path": path.display().to_string()}));
+    std::fs::read(path).map_err(|e| Failure::input("cannot-open", format!("{} cannot be read: {e}", path.display())))
+}
+
+/// Reads a map that is to be used, and checks its certificate first.
+pub fn open_certified(session: &Session, path: &Path) -> Result<(FoliationMap, Claim)> {
+    let bytes = read_bytes(session, path)?;
+    session.stage("certificate");
+    let claim = match verify_bytes(&bytes) {
+        Ok(Verdict::Certified(claim)) => claim,
+        Ok(Verdict::Refuted(witness)) => {
+            let what = format!("the certificate of {} does not hold", path.display());
+            return Err(refuted(Exit::Refuted, &what, &witness));
+        }
+        Ok(Verdict::Undecided(obstacle)) => return Err(undecided(&obstacle)),
+        Err(error) => return Err(unreadable(path, &error)),
+    };
+    session.check()?;
+    session.stage("prepare");
+    let map = read_map(&bytes).map_err(|e| Failure::input("unreadable-map", format!("{}: {e}", path.display())))?;
+    session.fact("input", map_json(&map, path));
+    session.check()?;
+    Ok((map, claim))
+}
+
+/// The `input` field for a map.
+pub fn map_json(map: &FoliationMap, path: &Path) -> Value {
+    let path = path.display().to_string();
+    match map {
+        FoliationMap::Surface(map) => json!({
+            "path": path, "vertices": map.source().positions().len(), "triangles": map.source().complex().cell_count(),
+        }),
+        FoliationMap::Volume(map) => json!({
+            "path": path, "vertices": map.source().positions().len(), "tetrahedra": map.source().complex().cell_count(),
+        }),
+    }
+}

@@ -1,0 +1,78 @@
+//! `homeo verify`: what is proved about a map, in words.
+
+use std::path::Path;
+
+use homeo::progress::Progress;
+use homeo_verify::{Claim, SourceMatch, Verdict, compare_source, verify_bytes};
+use serde_json::json;
+
+use crate::answer::Answer;
+use crate::args::VerifyArgs;
+use crate::failure::{Exit, Failure, Result};
+use crate::mesh_input::{self, Requested};
+use crate::proof;
+use crate::session::Session;
+
+/// Checks a map file, and whether it is about a given mesh.
+pub fn run(session: &Session, options: &VerifyArgs) -> Result<Answer> {
+    let bytes = proof::read_bytes(session, &options.map)?;
+    session.check()?;
+    session.stage("certificate");
+    let verdict = verify_bytes(&bytes).map_err(|error| proof::unreadable(&options.map, &error))?;
+    let claim = match verdict {
+        Verdict::Certified(claim) => claim,
+        Verdict::Refuted(witness) => {
+            let what = format!("refuted: {} is not the map it claims to be", options.map.display());
+            return Err(proof::refuted(Exit::Refuted, &what, &witness));
+        }
+        Verdict::Undecided(obstacle) => return Err(proof::undecided(&obstacle)),
+    };
+    session.check()?;
+    if let Some(mesh) = &options.source {
+        let requested = Requested { triangulate: options.triangulate, orient: options.orient };
+        compare(session, &bytes, mesh, requested)?;
+    }
+    session.fact("input", described(&claim, &options.map));
+    let fields = json!({
+        "certificate": proof::claim_json(&claim),
+        "source": options.source.as_ref().map(|path| json!({"path": path.display().to_string(), "same": true})),
+    });
+    Ok(Answer::new(fields, words(&claim, options)))
+}
+
+fn compare(session: &Session, bytes: &[u8], path: &Path, requested: Requested) -> Result<()> {
+    let mesh = mesh_input::read(session, path, requested)?;
+    let (cells, size) = mesh.flat_cells();
+    match compare_source(bytes, &mesh.file.positions, &cells, size) {
+        Ok(SourceMatch::Same) => Ok(()),
+        Ok(SourceMatch::Different(what)) => Err(Failure::input(
+            "other-source",
+            format!("the certificate holds, but the map is not about {}: {what}", path.display()),
+        )
+        .with("source", json!({"path": path.display().to_string(), "same": false}))),
+        Err(error) => Err(Failure::bug(format!("a map that was certified became unreadable: {error}"))),
+    }
+}
+
+/// The counts of the source are among what was checked.
+fn described(claim: &Claim, path: &Path) -> serde_json::Value {
+    let count = |what: &str| claim.checked.iter().find(|(name, _)| name.starts_with(what)).map(|&(_, n)| n);
+    let cells = if matches!(claim.target.as_str(), "square" | "disk") { "triangles" } else { "tetrahedra" };
+    json!({"path": path.display().to_string(), "vertices": count("source vertices"), cells: count("source cells")})
+}
+
+fn words(claim: &Claim, options: &VerifyArgs) -> String {
+    let mut text = format!("certified: {}\n\nchecked\n", claim.statement);
+    for (what, count) in claim.checked.iter().filter(|(_, count)| *count > 0) {
+        text.push_str(&format!("  {count:>10}  {what}\n"));
+    }
+    text.push_str(&format!("\nsource  sha256 {}\n", claim.source_sha256));
+    if let Some(path) = &options.source {
+        text.push_str(&format!("        bit for bit the mesh of {}\n", path.display()));
+    }
+    text.push_str("\nlimits\n");
+    for limit in &claim.limits {
+        text.push_str(&format!("  {limit}\n"));
+    }
+    text
+}

@@ -1,0 +1,34 @@
+//! Every example in `--help` runs.
+
+mod common;
+
+use common::Folder;
+
+#[test]
+fn examples_run_as_printed() {
+    for verb in ["", "info", "map", "eval", "verify", "report"] {
+        let folder = Folder::new().with_testdata();
+        let help = folder.line(&format!("{verb} --help")).expect(0).stdout;
+        let examples: Vec<&str> = help
+            .lines()
+            .filter_map(|line| line.strip_prefix("  homeo "))
+            .filter(|line| !line.starts_with('['))
+            .collect();
+        assert!(!examples.is_empty(), "`homeo {verb} --help` shows no example");
+        for example in examples {
+            folder.line(example).expect(0);
+        }
+    }
+}
+
+#[test]
+fn verbs_are_those_that_exist() {
+    let help = Folder::new().line("--help").expect(0).stdout;
+    for verb in ["info", "map", "eval", "verify", "report"] {
+        assert!(help.contains(&format!("\n  {verb} ")), "{verb}");
+    }
+    for verb in ["shell", "hyperbolic", "remesh"] {
+        assert!(!help.contains(verb), "{verb} does not exist yet");
+    }
+    assert!(Folder::new().line("--version").expect(0).stdout.starts_with("homeo "));
+}
