@@ -10,6 +10,7 @@
 use homeo_core::mesh::{CellId, Facet};
 
 use super::Foliation;
+use super::foliation::Step;
 use super::exact::Sense;
 use super::locate::FloatLocation;
 
@@ -35,8 +36,10 @@ pub(super) struct FastLeaf<const K: usize> {
     zeros: u8,
     derivative: [[f64; 2]; K],
     reach: [f64; 2],
-    /// Before the first facet: plain bounds of the errors of all weights.
-    start: Option<[f64; K]>,
+    /// Bounds of the errors of all weights; 0 for those that are exactly 0.
+    errors: [f64; K],
+    /// Whether the first facet is still to come, with no box yet but plain bounds.
+    is_starting: bool,
     /// Length travelled.
     pub length: f64,
     /// Bound of its error.
@@ -53,7 +56,8 @@ impl<const K: usize> FastLeaf<K> {
             zeros,
             derivative: [[0.0; 2]; K],
             reach: [0.0; 2],
-            start: Some(at.errors),
+            errors: at.errors,
+            is_starting: true,
             length: 0.0,
             length_error: 0.0,
             steps: 0,
@@ -61,25 +65,26 @@ impl<const K: usize> FastLeaf<K> {
     }
 
     /// Bound of the error of weight `i`.
-    #[inline]
+    #[inline(always)]
     pub fn error(&self, i: usize) -> f64 {
-        if self.zeros >> i & 1 == 1 {
-            return 0.0;
-        }
-        match &self.start {
-            Some(errors) => errors[i],
-            None => {
-                let [u, v] = self.derivative[i];
-                // The factor covers the rounding of this very bound.
-                1.0000001 * (u.abs() * self.reach[0] + v.abs() * self.reach[1])
-            }
+        self.errors[i]
+    }
+
+    /// Bounds of all errors from the box.
+    #[inline(always)]
+    fn bound_errors(&mut self) {
+        for j in 0..K {
+            let [u, v] = self.derivative[j];
+            // The factor covers the rounding of this very bound.
+            let bound = 1.0000001 * (u.abs() * self.reach[0] + v.abs() * self.reach[1]);
+            self.errors[j] = if self.zeros >> j & 1 == 1 { 0.0 } else { bound };
         }
     }
 
     /// The facet through which the leaf leaves the current cell.
-    #[inline]
-    pub fn exit(&self, map: &Foliation<K>, sense: Sense) -> Result<usize, Undecided> {
-        let direction = &map.steps[self.cell.index()].direction;
+    #[inline(always)]
+    pub fn exit(&self, step: &Step, sense: Sense) -> Result<usize, Undecided> {
+        let direction = &step.direction;
         let sign = sense.exit_sign();
         let mut best = K;
         for j in (0..K).filter(|&j| direction[j].signum() == sign) {
@@ -104,10 +109,18 @@ impl<const K: usize> FastLeaf<K> {
         Ok(best)
     }
 
+    /// How long the leaf will be at facet `i` of the current cell.
+    #[inline(always)]
+    fn length_at(&self, step: &Step, i: usize) -> f64 {
+        if self.zeros >> i & 1 == 1 {
+            return self.length;
+        }
+        self.length + f64::from(step.length) * (self.weights[i] / f64::from(step.direction[i])).abs()
+    }
+
     /// Moves to facet `i` of the current cell.
-    #[inline]
-    pub fn move_to(&mut self, map: &Foliation<K>, i: usize) -> Result<(), Undecided> {
-        let step = &map.steps[self.cell.index()];
+    #[inline(always)]
+    pub fn move_to(&mut self, step: &Step, i: usize) -> Result<(), Undecided> {
         if self.zeros >> i & 1 == 1 {
             return self.settle(i);
         }
@@ -128,23 +141,22 @@ impl<const K: usize> FastLeaf<K> {
             }
             self.weights[j] -= along * direction;
             let ratio = direction / offset;
-            match &mut self.start {
-                Some(errors) => errors[j] += ratio.abs() * error + STEP_ROUNDING,
-                None => {
-                    self.derivative[j][0] -= ratio * column[0];
-                    self.derivative[j][1] -= ratio * column[1];
-                }
+            if self.is_starting {
+                self.errors[j] += ratio.abs() * error + STEP_ROUNDING;
+            } else {
+                self.derivative[j][0] -= ratio * column[0];
+                self.derivative[j][1] -= ratio * column[1];
             }
         }
         self.weights[i] = 0.0;
         self.derivative[i] = [0.0; 2];
         self.zeros = stays_zero | 1 << i;
         self.normalize();
-        if self.start.is_some() { self.settle(i) } else { self.add_rounding(i) }
+        if self.is_starting { self.settle(i) } else { self.add_rounding(i) }
     }
 
     /// Makes the weights add up to 1 again by the largest of them.
-    #[inline]
+    #[inline(always)]
     fn normalize(&mut self) {
         let mut largest = 0;
         let mut sum = 0.0;
@@ -158,15 +170,19 @@ impl<const K: usize> FastLeaf<K> {
     }
 
     /// Turns plain bounds into the box on the first facet.
+    #[inline]
     fn settle(&mut self, i: usize) -> Result<(), Undecided> {
-        let Some(errors) = self.start else { return Ok(()) };
-        self.rebuild(i, errors)?;
-        self.start = None;
-        Ok(())
+        if !self.is_starting {
+            return Ok(());
+        }
+        self.is_starting = false;
+        self.rebuild(i)
     }
 
     /// A box whose sides are two of the facet's own coordinates.
-    fn rebuild(&mut self, i: usize, errors: [f64; K]) -> Result<(), Undecided> {
+    #[cold]
+    fn rebuild(&mut self, i: usize) -> Result<(), Undecided> {
+        let errors = self.errors;
         let mut others = (0..K).filter(|&j| j != i);
         let [p, q] = [others.next().unwrap_or(0), others.next().unwrap_or(0)];
         self.derivative = [[0.0; 2]; K];
@@ -179,11 +195,12 @@ impl<const K: usize> FastLeaf<K> {
         } else {
             self.derivative[q] = [-1.0, 0.0];
         }
+        self.bound_errors();
         if self.reach[0].max(self.reach[1]) < LARGEST_ERROR { Ok(()) } else { Err(Undecided) }
     }
 
     /// Adds the rounding of one step, pulled back through the derivative.
-    #[inline]
+    #[inline(always)]
     fn add_rounding(&mut self, i: usize) -> Result<(), Undecided> {
         // The rows of the derivative add up to zero: any two of them will do.
         let p = if i == 0 { 1 } else { 0 };
@@ -192,8 +209,8 @@ impl<const K: usize> FastLeaf<K> {
         if K == 3 {
             let steepness = u[0].abs();
             if !(1e-150..1e150).contains(&steepness) {
-                let errors = std::array::from_fn(|j| self.error(j));
-                return self.rebuild(i, errors);
+                self.bound_errors();
+                return self.rebuild(i);
             }
             self.reach[0] += STEP_ROUNDING / steepness;
         } else {
@@ -210,12 +227,15 @@ impl<const K: usize> FastLeaf<K> {
         self.still_known()
     }
 
-    fn still_known(&self) -> Result<(), Undecided> {
+    #[inline(always)]
+    fn still_known(&mut self) -> Result<(), Undecided> {
+        self.bound_errors();
         if (0..K).all(|j| self.error(j) < LARGEST_ERROR) { Ok(()) } else { Err(Undecided) }
     }
 
     /// Encloses the box of errors in one with perpendicular sides, the first along its longest side
     /// (the wrapping of Lohner's QR variant: a thin box stays thin).
+    #[cold]
     fn turn_box(&mut self, i: usize, p: usize, q: usize) {
         let side = |k: usize| [self.derivative[p][k] * self.reach[k], self.derivative[q][k] * self.reach[k]];
         let sides = [side(0), side(1)];
@@ -238,17 +258,17 @@ impl<const K: usize> FastLeaf<K> {
     }
 
     /// Crosses facet `i`; gives the facet when the leaf ends there.
-    #[inline]
-    pub fn cross(&mut self, map: &Foliation<K>, i: usize) -> Option<Facet> {
+    #[inline(always)]
+    pub fn cross(&mut self, step: &Step, i: usize) -> Option<Facet> {
         self.steps += 1;
-        let step = &map.steps[self.cell.index()];
         let far = step.across[i];
         if far.is_none() {
             return Some(Facet::new(self.cell, i));
         }
-        let (weights, derivative, zeros) = (self.weights, self.derivative, self.zeros);
+        let (weights, derivative, errors, zeros) = (self.weights, self.derivative, self.errors, self.zeros);
         self.weights = [0.0; K];
         self.derivative = [[0.0; 2]; K];
+        self.errors = [0.0; K];
         self.zeros = 1 << far.opposite();
         // Zero but after a step of no length, where it keeps the rows' sum at zero.
         self.derivative[far.opposite()] = derivative[i];
@@ -256,18 +276,26 @@ impl<const K: usize> FastLeaf<K> {
             let there = step.renumbered(i, k);
             self.weights[there] = weights[k];
             self.derivative[there] = derivative[k];
+            self.errors[there] = errors[k];
             self.zeros |= (zeros >> k & 1) << there;
         }
         self.cell = far.cell();
         None
     }
 
+    /// Goes on to the next cell; gives the facet when the leaf ends.
+    #[inline(always)]
+    fn advance(&mut self, map: &Foliation<K>, sense: Sense) -> Result<Option<Facet>, Undecided> {
+        let step = &map.steps[self.cell.index()];
+        let i = self.exit(step, sense)?;
+        self.move_to(step, i)?;
+        Ok(self.cross(step, i))
+    }
+
     /// Follows the leaf to its end; gives the facet there.
     pub fn follow(&mut self, map: &Foliation<K>, sense: Sense) -> Result<Facet, Undecided> {
         loop {
-            let i = self.exit(map, sense)?;
-            self.move_to(map, i)?;
-            if let Some(end) = self.cross(map, i) {
+            if let Some(end) = self.advance(map, sense)? {
                 return Ok(end);
             }
         }
@@ -278,16 +306,15 @@ impl<const K: usize> FastLeaf<K> {
     /// Gives bounds of the errors of the weights.
     pub fn follow_for(&mut self, map: &Foliation<K>, wanted: f64, wanted_error: f64) -> Result<[f64; K], Undecided> {
         loop {
-            let i = self.exit(map, Sense::Forward)?;
-            let before = *self;
-            self.move_to(map, i)?;
-            if self.length >= wanted {
-                *self = before;
+            let step = &map.steps[self.cell.index()];
+            let i = self.exit(step, Sense::Forward)?;
+            if self.length_at(step, i) >= wanted {
                 return Ok(self.go_inside(map, wanted, wanted_error));
             }
-            if self.cross(map, i).is_some() {
+            self.move_to(step, i)?;
+            if self.cross(step, i).is_some() {
                 // Rounding only: the leaf ends here.
-                return Ok(std::array::from_fn(|j| self.error(j)));
+                return Ok(self.errors);
             }
         }
     }
