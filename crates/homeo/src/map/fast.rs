@@ -301,6 +301,25 @@ impl<const K: usize> FastLeaf<K> {
         }
     }
 
+    /// Follows a leaf to both ends by turns, so that the processor works on one while it waits for the other.
+    /// Gives the facets at the ends.
+    pub fn follow_both(
+        map: &Foliation<K>,
+        back: &mut Self,
+        ahead: &mut Self,
+    ) -> Result<[Facet; 2], Undecided> {
+        loop {
+            let start = back.advance(map, Sense::Backward)?;
+            let end = ahead.advance(map, Sense::Forward)?;
+            match (start, end) {
+                (None, None) => {}
+                (Some(start), Some(end)) => return Ok([start, end]),
+                (Some(start), None) => return Ok([start, ahead.follow(map, Sense::Forward)?]),
+                (None, Some(end)) => return Ok([back.follow(map, Sense::Backward)?, end]),
+            }
+        }
+    }
+
     /// Follows the leaf from its source end until `wanted` has been travelled, and moves inside the
     /// cell where that happens. `wanted_error` bounds the error of `wanted`.
     /// Gives bounds of the errors of the weights.
