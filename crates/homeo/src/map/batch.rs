@@ -59,7 +59,7 @@ impl<const K: usize> Foliation<K> {
             }
             for place in (0..band.len()).rev() {
                 let number = band[place];
-                let sense = if number % 2 == 0 { Sense::Backward } else { Sense::Forward };
+                let sense = if number.is_multiple_of(2) { Sense::Backward } else { Sense::Forward };
                 ends[number] = match leaves[number].advance(&steps[place], sense) {
                     Ok(None) => continue,
                     Ok(Some(end)) => Ok(end),
