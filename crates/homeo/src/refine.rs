@@ -189,6 +189,9 @@ impl<const K: usize> RefinedMesh<K> {
             if !corners.iter().all(inside) {
                 return Err(format!("cell {cell} does not lie in its parent"));
             }
+            if *corners != parent && mesh.is_flat(corners, parent) {
+                return Err(format!("cell {cell} is flat"));
+            }
         }
         Ok(mesh)
     }
@@ -229,6 +232,18 @@ impl<const K: usize> RefinedMesh<K> {
             None => Carrier::vertex(vertex),
             Some(added) => self.added[added],
         }
+    }
+
+    /// Whether a child of `parent` has no volume.
+    fn is_flat(&self, corners: &[VertexId; K], parent: [VertexId; K]) -> bool {
+        let weight = |carrier: &Carrier<K>, vertex: VertexId| {
+            carrier.terms().find(|&(v, _)| v == vertex).map_or(0, |(_, weight)| i128::from(weight))
+        };
+        let rows = corners.map(|v| {
+            let carrier = self.carrier(v);
+            parent.map(|corner| weight(&carrier, corner))
+        });
+        determinant(&rows, (1 << K) - 1) == 0
     }
 
     fn add_vertex(&mut self, simplex: &[VertexId], source: &SourceMesh<K>) -> Result<u32, TooDeep> {
@@ -333,6 +348,22 @@ impl<const K: usize> RefinedMesh<K> {
             .expect("stars only name vertices that exist (please report this)");
         Ok(origins)
     }
+}
+
+/// Determinant of the last rows in the columns that a mask names, by expansion.
+fn determinant<const K: usize>(rows: &[[i128; K]; K], columns: u8) -> i128 {
+    let row = K - columns.count_ones() as usize;
+    if columns == 0 {
+        return 1;
+    }
+    let used = (0..K).filter(|&j| columns >> j & 1 == 1);
+    used.enumerate()
+        .filter(|&(_, j)| rows[row][j] != 0)
+        .map(|(number, j)| {
+            let minor = rows[row][j] * determinant(rows, columns & !(1 << j));
+            if number % 2 == 0 { minor } else { -minor }
+        })
+        .sum()
 }
 
 /// Replaces each child that contains `simplex` by its star from `vertex`.

@@ -12,7 +12,7 @@ use zip::{CompressionMethod, ZipArchive};
 use super::FoliationMap;
 use super::npy::decode;
 use crate::input::SourceMesh;
-use crate::map::{Centre, Foliation, FoliationParts, Section, Target};
+use crate::map::{Centre, Foliation, FoliationParts, Section, Target, is_flat};
 use crate::refine::{Carrier, RefinedMesh};
 
 /// Why a file is no map that can be evaluated.
@@ -129,6 +129,10 @@ impl<'b> File<'b> {
             return inconsistent(format!("source vertex {row} is not finite"));
         }
         let complex = self.cells::<K>("source_cells", positions.len())?;
+        let flat = complex.cells().iter().position(|cell| is_flat(&cell.map(|v| positions[v.index()])));
+        if let Some(cell) = flat {
+            return inconsistent(format!("source cell {cell} is flat"));
+        }
         let source = SourceMesh::new(positions, complex);
         let mesh = if self.has("cells") { self.refined(&source)? } else { RefinedMesh::unrefined(&source) };
         let adjacency = mesh.complex().adjacency().map_err(|e| MapFileError::Inconsistent(e.to_string()))?;

@@ -5,7 +5,7 @@ use homeo_core::number::Rational;
 use homeo_core::predicate::Sign;
 
 use super::evaluate::{diamond_coordinates, tetrahedral_coordinates};
-use super::exact::{Sense, whole};
+use super::exact::{ExactLocation, Sense, whole};
 use super::fast::{FastLeaf, Undecided};
 use super::locate::{FloatLocation, Located, rational_point};
 use super::target::BALL_CORNERS;
@@ -41,10 +41,24 @@ impl<const K: usize> Foliation<K> {
                         _ => {}
                     }
                 }
-                self.locator.exactly(self.source(), &self.parts().mesh, &at, point)
+                self.exactly(&at, point)?
             }
         };
         Ok(self.rounded_image(&self.image_exact(&exact)))
+    }
+
+    /// The exact location that a floating-point one stands for.
+    fn exactly(&self, at: &FloatLocation<K>, point: [f64; 3]) -> Result<ExactLocation<K>, EvaluationError> {
+        if at.is_exact {
+            let weights = at.weights.map(|w| Rational::from_f64(w).unwrap_or(Rational::ZERO));
+            return Ok(ExactLocation { cell: at.cell, weights: whole(&weights) });
+        }
+        let (source, mesh) = (self.source(), &self.parts().mesh);
+        // A point near a surface stands for the nearest point of the surface.
+        if K == 3 {
+            return self.locator.nearest_exact(source, mesh, point);
+        }
+        self.locator.exact(source, mesh, &rational_point(point))
     }
 
     pub(super) fn fast_image(&self, at: &FloatLocation<K>) -> Result<Enclosed, Undecided> {

@@ -8,7 +8,8 @@ use homeo_core::predicate::{Sign, orient3d};
 use homeo_core::spatial::{Aabb, Tree};
 
 use super::EvaluationError;
-use super::exact::{ExactLocation, fractions, whole};
+use super::exact::{ExactLocation, whole};
+use super::nearest::{Projection, exact_cross, exact_dot, minus, nearest_exactly};
 use crate::input::SourceMesh;
 use crate::refine::RefinedMesh;
 
@@ -99,7 +100,7 @@ impl<const K: usize> Locator<K> {
             }
         }
         let (cell, weights) = found.ok_or(EvaluationError::OutsideSource)?;
-        Ok(self.child_exact(source, mesh, cell, &weights))
+        self.child_exact(source, mesh, cell, &weights)
     }
 
     /// The child of a source cell that contains the point with the given weights.
@@ -109,16 +110,16 @@ impl<const K: usize> Locator<K> {
         mesh: &RefinedMesh<K>,
         cell: CellId,
         weights: &[IBig; K],
-    ) -> ExactLocation<K> {
+    ) -> Result<ExactLocation<K>, EvaluationError> {
         let parent = source.complex().cell(cell);
         for child in self.children(cell) {
             let frame = ChildFrame::new(mesh, parent, child);
             let inner = frame.inner_exact(weights);
             if inner.iter().all(|w| !w.is_negative()) {
-                return ExactLocation { cell: child, weights: inner };
+                return Ok(ExactLocation { cell: child, weights: inner });
             }
         }
-        panic!("the children of source cell {cell} do not cover it (please report this)");
+        Err(EvaluationError::NotCovered(cell.raw()))
     }
 
     /// The location of a point in floating point.
@@ -149,7 +150,10 @@ impl<const K: usize> Locator<K> {
         });
         if let Some(cell) = found {
             let (weights, errors) = volume_weights(&corners(source, cell), point);
-            return Ok(self.child_float(source, mesh, cell, weights, errors, point));
+            return Ok(match self.child_float(source, mesh, cell, weights, errors) {
+                Some(at) => Located::Float(at),
+                None => Located::Exact(self.exact(source, mesh, &rational_point(point))?),
+            });
         }
         // Just outside by rounding: the nearest of the cells around, with weights clamped.
         let slack = self.diagonal * ROUNDING;
@@ -175,29 +179,66 @@ impl<const K: usize> Locator<K> {
         mesh: &RefinedMesh<K>,
         point: [f64; 3],
     ) -> Result<Located<K>, EvaluationError> {
-        let slack = self.diagonal * OFF_SURFACE;
-        let region = Aabb { low: point.map(|x| x - slack), high: point.map(|x| x + slack) };
-        let mut best: Option<(f64, CellId, [f64; K])> = None;
-        self.tree.query_box(&region, |index| {
+        let mut vertex: Option<(CellId, usize)> = None;
+        let mut best: Option<(CellId, Projection<K>)> = None;
+        let mut rival = f64::INFINITY;
+        self.tree.query_box(&self.around(point), |index| {
             let cell = CellId::new(index);
             let corners = corners(source, cell);
-            let weights = nearest_weights(&corners, point);
-            let moved = distance(combination(&corners, &weights), point);
-            if moved <= slack && best.is_none_or(|(least, known, _)| (moved, cell) < (least, known)) {
-                best = Some((moved, cell, weights));
+            if let Some(i) = corners.iter().position(|&c| c == point) {
+                vertex = Some(vertex.map_or((cell, i), |first| first.min((cell, i))));
+            }
+            let projection = Projection::new(&corners, point);
+            let known = best.as_ref().map_or(f64::INFINITY, |(_, best)| best.distance_at_most);
+            if projection.distance_at_most < known {
+                rival = best.as_ref().map_or(rival, |(_, old)| rival.min(old.distance_at_least));
+                best = Some((cell, projection));
+            } else {
+                rival = rival.min(projection.distance_at_least);
             }
         });
-        let (_, cell, weights) = best.ok_or(EvaluationError::OutsideSource)?;
-        if weights.contains(&0.0) {
-            // On an edge or a vertex: the point is defined by its weights.
-            return Ok(self.child_of_weights(source, mesh, cell, weights));
+        if let Some((cell, i)) = vertex {
+            return Ok(self.child_of_weights(source, mesh, cell, std::array::from_fn(|k| f64::from(k == i))));
         }
-        let corners = corners(source, cell);
-        let error = projection_error(&corners, point);
-        if error < USEFUL_WEIGHT_ERROR {
-            return Ok(self.child_float(source, mesh, cell, weights, [error; K], point));
+        if let Some((cell, p)) = best.filter(|(_, p)| p.distance_at_most < rival.min(self.off_surface())) {
+            if let Some(at) = self.child_float(source, mesh, cell, p.weights, p.errors) {
+                return Ok(Located::Float(at));
+            }
         }
-        Ok(Located::Exact(self.projected(source, mesh, cell, &weights, point)))
+        self.nearest_exact(source, mesh, point).map(Located::Exact)
+    }
+
+    /// How far from a surface a point may be.
+    fn off_surface(&self) -> f64 {
+        self.diagonal * OFF_SURFACE
+    }
+
+    fn around(&self, point: [f64; 3]) -> Aabb {
+        let slack = self.off_surface();
+        Aabb { low: point.map(|x| (x - slack).next_down()), high: point.map(|x| (x + slack).next_up()) }
+    }
+
+    /// The location of the point of a surface that is nearest to a point, exactly; of several the one in the first cell.
+    pub fn nearest_exact(
+        &self,
+        source: &SourceMesh<K>,
+        mesh: &RefinedMesh<K>,
+        point: [f64; 3],
+    ) -> Result<ExactLocation<K>, EvaluationError> {
+        let mut best: Option<(Rational, CellId, [Rational; K])> = None;
+        let exact_point = rational_point(point);
+        self.tree.query_box(&self.around(point), |index| {
+            let cell = CellId::new(index);
+            if let Some((off, weights)) = nearest_exactly(&corners(source, cell), &exact_point) {
+                if best.as_ref().is_none_or(|(least, known, _)| (&off, cell) < (least, *known)) {
+                    best = Some((off, cell, weights));
+                }
+            }
+        });
+        let slack = Rational::from_f64(self.off_surface()).unwrap_or(Rational::ZERO);
+        let (_, cell, weights) =
+            best.filter(|(off, ..)| *off <= &slack * &slack).ok_or(EvaluationError::OutsideSource)?;
+        self.child_exact(source, mesh, cell, &whole(&weights))
     }
 
     /// The child that holds a point given by weights, which are taken for exact ones from here on.
@@ -222,6 +263,7 @@ impl<const K: usize> Locator<K> {
         Located::Float(FloatLocation { cell: best.1, weights, errors, is_exact: true })
     }
 
+    /// The child that holds a point of a cell, where rounding leaves no doubt.
     fn child_float(
         &self,
         source: &SourceMesh<K>,
@@ -229,55 +271,17 @@ impl<const K: usize> Locator<K> {
         cell: CellId,
         weights: [f64; K],
         errors: [f64; K],
-        point: [f64; 3],
-    ) -> Located<K> {
+    ) -> Option<FloatLocation<K>> {
         let mut children = self.children(cell);
         if children.len() == 1 {
-            let cell = children.next().unwrap_or(cell);
-            return Located::Float(FloatLocation { cell, weights, errors, is_exact: false });
+            return children.next().map(|cell| FloatLocation { cell, weights, errors, is_exact: false });
         }
         let parent = source.complex().cell(cell);
-        for child in self.children(cell) {
-            let (weights, errors) = ChildFrame::new(mesh, parent, child).inner_float(&weights, &errors);
-            if weights.iter().zip(&errors).all(|(w, e)| w >= e) {
-                return Located::Float(FloatLocation { cell: child, weights, errors, is_exact: false });
-            }
-        }
-        Located::Exact(self.projected(source, mesh, cell, &weights, point))
-    }
-
-    /// The exact location of a point (of its projection, on a surface) in a source cell that is known
-    /// to hold it; where rounding put a projection just outside, its clamped weights decide.
-    fn projected(
-        &self,
-        source: &SourceMesh<K>,
-        mesh: &RefinedMesh<K>,
-        cell: CellId,
-        weights: &[f64; K],
-        point: [f64; 3],
-    ) -> ExactLocation<K> {
-        let exact = exact_projection(&corners(source, cell), &rational_point(point))
-            .unwrap_or_else(|| whole(&clamp(*weights).map(|w| Rational::from_f64(w).unwrap_or(Rational::ZERO))));
-        self.child_exact(source, mesh, cell, &exact)
-    }
-
-    /// The exact location that a floating-point one stands for.
-    pub fn exactly(
-        &self,
-        source: &SourceMesh<K>,
-        mesh: &RefinedMesh<K>,
-        at: &FloatLocation<K>,
-        point: [f64; 3],
-    ) -> ExactLocation<K> {
-        if at.is_exact {
-            let weights = at.weights.map(|w| Rational::from_f64(w).unwrap_or(Rational::ZERO));
-            return ExactLocation { cell: at.cell, weights: whole(&weights) };
-        }
-        let cell = mesh.parents()[at.cell.index()];
-        let frame = ChildFrame::new(mesh, source.complex().cell(cell), at.cell);
-        let inner = at.weights.map(|w| Rational::from_f64(w.max(0.0)).unwrap_or(Rational::ZERO));
-        let outer = fractions(&frame.outer_exact(&whole(&inner))).map(|w| w.to_f64());
-        self.projected(source, mesh, cell, &outer, point)
+        children.find_map(|cell| {
+            let (weights, errors) = ChildFrame::new(mesh, parent, cell).inner_float(&weights, &errors);
+            let is_inside = weights.iter().zip(&errors).all(|(w, e)| w >= e);
+            is_inside.then_some(FloatLocation { cell, weights, errors, is_exact: false })
+        })
     }
 
     /// The source weights of an exact location, with the source cell that they refer to.
@@ -422,44 +426,8 @@ fn same_point<const K: usize>(
     })
 }
 
-type ExactVector = [Rational; 3];
-
-fn minus(a: &ExactVector, b: &ExactVector) -> ExactVector {
-    [0, 1, 2].map(|axis| &a[axis] - &b[axis])
-}
-
-fn exact_cross(a: &ExactVector, b: &ExactVector) -> ExactVector {
-    let entry = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
-    [entry(1, 2), entry(2, 0), entry(0, 1)]
-}
-
-fn exact_dot(a: &ExactVector, b: &ExactVector) -> Rational {
-    &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
-}
-
-/// Exact weights of the projection of a rational point on a triangle's plane (of the point itself, for
-/// a tetrahedron), up to a positive factor; `None` when it lies outside.
-fn exact_projection<const K: usize>(corners: &[[f64; 3]; K], point: &[Rational; 3]) -> Option<[IBig; K]> {
-    exact_barycentric(corners, point, OffPlane::Project)
-}
-
-/// What becomes of a point that is not in a triangle's plane.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum OffPlane {
-    Project,
-    Refuse,
-}
-
 /// Barycentric weights of a rational point in a cell, up to a positive factor; `None` when outside.
 fn exact_weights<const K: usize>(corners: &[[f64; 3]; K], point: &[Rational; 3]) -> Option<[IBig; K]> {
-    exact_barycentric(corners, point, OffPlane::Refuse)
-}
-
-fn exact_barycentric<const K: usize>(
-    corners: &[[f64; 3]; K],
-    point: &[Rational; 3],
-    off_plane: OffPlane,
-) -> Option<[IBig; K]> {
     let mut exact = Vec::with_capacity(K);
     for corner in corners {
         let [x, y, z] = corner.map(Rational::from_f64);
@@ -479,7 +447,7 @@ fn exact_barycentric<const K: usize>(
     let spans = [1, 2].map(|i| minus(&exact[i], &exact[0]));
     let offset = minus(point, &exact[0]);
     let normal = exact_cross(&spans[0], &spans[1]);
-    if off_plane == OffPlane::Refuse && exact_dot(&normal, &offset).sign() != Sign::Zero {
+    if exact_dot(&normal, &offset).sign() != Sign::Zero {
         return None;
     }
     weights[1] = exact_dot(&exact_cross(&offset, &spans[1]), &normal);
@@ -559,55 +527,4 @@ fn combination<const K: usize>(corners: &[[f64; 3]; K], weights: &[f64; K]) -> [
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
-}
-
-/// Weights with a larger error than this are computed exactly.
-const USEFUL_WEIGHT_ERROR: f64 = 1e-10;
-
-/// Bound of the errors of the weights that [`nearest_weights`] gives inside a triangle.
-fn projection_error<const K: usize>(corners: &[[f64; 3]; K], point: [f64; 3]) -> f64 {
-    let minus = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let (u, v, p) = (minus(corners[1], corners[0]), minus(corners[2], corners[0]), minus(point, corners[0]));
-    let (uu, uv, vv, pp) = (dot(u, u), dot(u, v), dot(v, v), dot(p, p));
-    let (size_u, size_v, size_p) = (uu.sqrt(), vv.sqrt(), pp.sqrt());
-    let determinant = uu * vv - uv * uv;
-    let rounding = 16.0 * f64::EPSILON;
-    let determinant_error = 2.0 * rounding * uu * vv;
-    let numerator_error = 2.0 * rounding * size_p * size_u.max(size_v) * size_u * size_v;
-    let safe = determinant - determinant_error;
-    // Three weights, the first being 1 minus the others.
-    if safe > 0.0 { 2.0 * (numerator_error + determinant_error) / safe + rounding } else { f64::INFINITY }
-}
-
-/// Weights of the point of a triangle that is nearest to a point (rounded).
-fn nearest_weights<const K: usize>(corners: &[[f64; 3]; K], point: [f64; 3]) -> [f64; K] {
-    let mut best = [0.0; K];
-    if let Some(vertex) = corners.iter().position(|&c| c == point) {
-        best[vertex] = 1.0;
-        return best;
-    }
-    let minus = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let (u, v, p) = (minus(corners[1], corners[0]), minus(corners[2], corners[0]), minus(point, corners[0]));
-    let (uu, uv, vv, pu, pv) = (dot(u, u), dot(u, v), dot(v, v), dot(p, u), dot(p, v));
-    let denominator = uu * vv - uv * uv;
-    let (s, t) = ((pu * vv - pv * uv) / denominator, (pv * uu - pu * uv) / denominator);
-    if s >= 0.0 && t >= 0.0 && s + t <= 1.0 {
-        (best[0], best[1], best[2]) = (1.0 - s - t, s, t);
-        return best;
-    }
-    let mut least = f64::INFINITY;
-    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-        let edge = minus(corners[j], corners[i]);
-        let along = (dot(minus(point, corners[i]), edge) / dot(edge, edge)).clamp(0.0, 1.0);
-        let mut weights = [0.0; K];
-        weights[i] = 1.0 - along;
-        weights[j] = along;
-        let off = distance(combination(corners, &weights), point);
-        if off < least {
-            (least, best) = (off, weights);
-        }
-    }
-    best
 }

@@ -9,11 +9,13 @@ mod fast;
 mod float;
 mod foliation;
 mod locate;
+mod nearest;
 mod sample;
 mod section;
 mod target;
 
 pub use foliation::{Centre, DEFAULT_ACCURACY, Foliation, FoliationParts};
+pub(crate) use nearest::is_flat;
 pub use sample::{LeafPolyline, distortions};
 pub use section::Section;
 pub use target::Target;
@@ -45,6 +47,9 @@ pub enum EvaluationError {
     /// Different cells that overlap in space contain the point.
     #[error("the point lies in cells {0} and {1}, which overlap in space: the mesh crosses itself there")]
     Ambiguous(u32, u32),
+    /// The refined cells leave a hole: the map comes from a damaged file.
+    #[error("no refined cell contains the point of cell {0}: the map is damaged")]
+    NotCovered(u32),
 }
 
 /// A homeomorphism from a mesh onto a standard shape.
