@@ -17,9 +17,9 @@ use super::locate::FloatLocation;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Undecided;
 
-/// Bound of the rounding of one step, in barycentric coordinates (all are at most 1): a quotient, a
-/// product and a difference for each weight, and the sum that normalizes them, half an ulp each.
-const STEP_ROUNDING: f64 = 5.0 * f64::EPSILON;
+/// Bound of the rounding of one step, in barycentric coordinates (all are at most 1): an inverse, two
+/// products and a difference for each weight, and the sum that normalizes them, half an ulp each.
+const STEP_ROUNDING: f64 = 6.0 * f64::EPSILON;
 /// The box of errors is turned when the columns of the derivative are this close to parallel.
 const NEARLY_PARALLEL: f64 = 0.05;
 /// Errors beyond this mean that nothing is known any more.
@@ -33,7 +33,8 @@ pub(super) struct FastLeaf<const K: usize> {
     pub weights: [f64; K],
     /// Bit per weight that is exactly 0.
     zeros: u8,
-    derivative: [[f64; 2]; K],
+    /// The two columns of the derivative.
+    columns: [[f64; K]; 2],
     reach: [f64; 2],
     /// Before the first facet: plain bounds of the errors of all weights.
     start: Option<[f64; K]>,
@@ -51,7 +52,7 @@ impl<const K: usize> FastLeaf<K> {
             cell: at.cell,
             weights: at.weights,
             zeros,
-            derivative: [[0.0; 2]; K],
+            columns: [[0.0; K]; 2],
             reach: [0.0; 2],
             start: Some(at.errors),
             length: 0.0,
@@ -69,7 +70,7 @@ impl<const K: usize> FastLeaf<K> {
         match &self.start {
             Some(errors) => errors[i],
             None => {
-                let [u, v] = self.derivative[i];
+                let [u, v] = [self.columns[0][i], self.columns[1][i]];
                 // The factor covers the rounding of this very bound.
                 1.0000001 * (u.abs() * self.reach[0] + v.abs() * self.reach[1])
             }
@@ -107,40 +108,39 @@ impl<const K: usize> FastLeaf<K> {
     /// Moves to facet `i` of the current cell.
     #[inline]
     pub fn move_to(&mut self, map: &Foliation<K>, i: usize) -> Result<(), Undecided> {
-        let step = &map.steps[self.cell.index()];
         if self.zeros >> i & 1 == 1 {
             return self.settle(i);
         }
-        let offset = f64::from(step.direction[i]);
+        let step = &map.steps[self.cell.index()];
+        let directions: [f64; K] = std::array::from_fn(|j| f64::from(step.direction[j]));
+        let inverse = 1.0 / directions[i];
         let error = self.error(i);
-        // Weights move to b_j - (b_i / d_i) d_j, backwards and forwards alike.
-        let along = self.weights[i] / offset;
         let h = f64::from(step.length);
+        // Weights move to b_j - (b_i / d_i) d_j, backwards and forwards alike.
+        let along = self.weights[i] * inverse;
         self.length += h * along.abs();
-        self.length_error += h * error / offset.abs() + 4.0 * f64::EPSILON * self.length;
-        let column = self.derivative[i];
-        let mut stays_zero = 0;
+        self.length_error += h * error * inverse.abs() + 4.0 * f64::EPSILON * self.length;
         for j in 0..K {
-            let direction = f64::from(step.direction[j]);
-            if step.direction[j] == 0 && self.zeros >> j & 1 == 1 {
-                stays_zero |= 1 << j;
-                continue;
-            }
-            self.weights[j] -= along * direction;
-            let ratio = direction / offset;
-            match &mut self.start {
-                Some(errors) => errors[j] += ratio.abs() * error + STEP_ROUNDING,
-                None => {
-                    self.derivative[j][0] -= ratio * column[0];
-                    self.derivative[j][1] -= ratio * column[1];
-                }
-            }
+            self.weights[j] -= along * directions[j];
         }
         self.weights[i] = 0.0;
-        self.derivative[i] = [0.0; 2];
-        self.zeros = stays_zero | 1 << i;
+        let stays_zero = (0..K).filter(|&j| step.direction[j] == 0).fold(0, |bits, j| bits | 1 << j);
+        self.zeros = self.zeros & stays_zero | 1 << i;
         self.normalize();
-        if self.start.is_some() { self.settle(i) } else { self.add_rounding(i) }
+        if let Some(errors) = &mut self.start {
+            for j in 0..K {
+                errors[j] += (directions[j] * inverse).abs() * error + STEP_ROUNDING;
+            }
+            return self.settle(i);
+        }
+        for column in &mut self.columns {
+            let along = column[i] * inverse;
+            for j in 0..K {
+                column[j] -= along * directions[j];
+            }
+            column[i] = 0.0;
+        }
+        self.add_rounding(i)
     }
 
     /// Makes the weights add up to 1 again by the largest of them.
@@ -167,28 +167,36 @@ impl<const K: usize> FastLeaf<K> {
 
     /// A box whose sides are two of the facet's own coordinates.
     fn rebuild(&mut self, i: usize, errors: [f64; K]) -> Result<(), Undecided> {
-        let mut others = (0..K).filter(|&j| j != i);
-        let [p, q] = [others.next().unwrap_or(0), others.next().unwrap_or(0)];
-        self.derivative = [[0.0; 2]; K];
+        let [p, q] = two_others(i);
         let bound = |j: usize| if self.zeros >> j & 1 == 1 { 0.0 } else { errors[j] + STEP_ROUNDING };
-        self.reach = [bound(p), if K == 4 { bound(q) } else { 0.0 }];
-        self.derivative[p] = [1.0, 0.0];
         if K == 4 {
-            self.derivative[q] = [0.0, 1.0];
-            self.derivative[K - 1 - usize::from(i == K - 1)] = [-1.0, -1.0];
+            self.reach = [bound(p), bound(q)];
+            self.set_box(i, [1.0, 0.0], [0.0, 1.0]);
         } else {
-            self.derivative[q] = [-1.0, 0.0];
+            self.reach = [bound(p), 0.0];
+            self.columns = [[0.0; K]; 2];
+            self.columns[0][p] = 1.0;
+            self.columns[0][q] = -1.0;
         }
         if self.reach[0].max(self.reach[1]) < LARGEST_ERROR { Ok(()) } else { Err(Undecided) }
+    }
+
+    /// Sets the columns of a box in a triangular facet by their first two coordinates; all three add up to 0.
+    fn set_box(&mut self, i: usize, first: [f64; 2], second: [f64; 2]) {
+        let [p, q] = two_others(i);
+        let r = 6 - i - p - q;
+        for (column, [x, y]) in self.columns.iter_mut().zip([first, second]) {
+            *column = [0.0; K];
+            (column[p], column[q], column[r]) = (x, y, -(x + y));
+        }
     }
 
     /// Adds the rounding of one step, pulled back through the derivative.
     #[inline]
     fn add_rounding(&mut self, i: usize) -> Result<(), Undecided> {
         // The rows of the derivative add up to zero: any two of them will do.
-        let p = if i == 0 { 1 } else { 0 };
-        let q = if i <= 1 { 2 } else { 1 };
-        let (u, v) = (self.derivative[p], self.derivative[q]);
+        let [p, q] = two_others(i);
+        let [u, v] = [[self.columns[0][p], self.columns[1][p]], [self.columns[0][q], self.columns[1][q]]];
         if K == 3 {
             let steepness = u[0].abs();
             if !(1e-150..1e150).contains(&steepness) {
@@ -196,18 +204,19 @@ impl<const K: usize> FastLeaf<K> {
                 return self.rebuild(i, errors);
             }
             self.reach[0] += STEP_ROUNDING / steepness;
-        } else {
-            let determinant = (u[0] * v[1] - u[1] * v[0]).abs();
-            let size = (u[0].abs() + v[0].abs()) * (u[1].abs() + v[1].abs());
-            if !(1e-150..1e150).contains(&determinant) || determinant < NEARLY_PARALLEL * size {
-                self.turn_box(i, p, q);
-                return self.still_known();
-            }
-            let scale = 1.001 * STEP_ROUNDING / determinant;
-            self.reach[0] += scale * (u[1].abs() + v[1].abs());
-            self.reach[1] += scale * (u[0].abs() + v[0].abs());
+            return self.still_known();
         }
-        self.still_known()
+        let determinant = (u[0] * v[1] - u[1] * v[0]).abs();
+        let sizes = [u[0].abs() + v[0].abs(), u[1].abs() + v[1].abs()];
+        if !(1e-150..1e150).contains(&determinant) || determinant < NEARLY_PARALLEL * sizes[0] * sizes[1] {
+            self.turn_box(i);
+            return self.still_known();
+        }
+        let scale = 1.001 * STEP_ROUNDING / determinant;
+        self.reach[0] += scale * sizes[1];
+        self.reach[1] += scale * sizes[0];
+        // Errors grow slowly: a look now and then is enough, and each comparison looks for itself.
+        if self.steps % 16 == 0 { self.still_known() } else { Ok(()) }
     }
 
     fn still_known(&self) -> Result<(), Undecided> {
@@ -216,8 +225,9 @@ impl<const K: usize> FastLeaf<K> {
 
     /// Encloses the box of errors in one with perpendicular sides, the first along its longest side
     /// (the wrapping of Lohner's QR variant: a thin box stays thin).
-    fn turn_box(&mut self, i: usize, p: usize, q: usize) {
-        let side = |k: usize| [self.derivative[p][k] * self.reach[k], self.derivative[q][k] * self.reach[k]];
+    fn turn_box(&mut self, i: usize) {
+        let [p, q] = two_others(i);
+        let side = |k: usize| [self.columns[k][p] * self.reach[k], self.columns[k][q] * self.reach[k]];
         let sides = [side(0), side(1)];
         let length = |s: [f64; 2]| s[0].hypot(s[1]);
         let longest = if length(sides[0]) >= length(sides[1]) { sides[0] } else { sides[1] };
@@ -230,11 +240,7 @@ impl<const K: usize> FastLeaf<K> {
                 + 2.0 * STEP_ROUNDING
         };
         self.reach = [extent(along), extent(across)];
-        let r = 6 - i - p - q;
-        self.derivative = [[0.0; 2]; K];
-        self.derivative[p] = [along[0], across[0]];
-        self.derivative[q] = [along[1], across[1]];
-        self.derivative[r] = [-(along[0] + along[1]), -(across[0] + across[1])];
+        self.set_box(i, along, across);
     }
 
     /// Crosses facet `i`; gives the facet when the leaf ends there.
@@ -246,16 +252,17 @@ impl<const K: usize> FastLeaf<K> {
         if far.is_none() {
             return Some(Facet::new(self.cell, i));
         }
-        let (weights, derivative, zeros) = (self.weights, self.derivative, self.zeros);
-        self.weights = [0.0; K];
-        self.derivative = [[0.0; 2]; K];
-        self.zeros = 1 << far.opposite();
+        let (weights, columns, zeros) = (self.weights, self.columns, self.zeros);
+        let new = far.opposite();
+        self.weights[new] = 0.0;
         // Zero but after a step of no length, where it keeps the rows' sum at zero.
-        self.derivative[far.opposite()] = derivative[i];
+        (self.columns[0][new], self.columns[1][new]) = (columns[0][i], columns[1][i]);
+        self.zeros = 1 << new;
         for k in (0..K).filter(|&k| k != i) {
             let there = step.renumbered(i, k);
             self.weights[there] = weights[k];
-            self.derivative[there] = derivative[k];
+            self.columns[0][there] = columns[0][k];
+            self.columns[1][there] = columns[1][k];
             self.zeros |= (zeros >> k & 1) << there;
         }
         self.cell = far.cell();
@@ -304,5 +311,15 @@ impl<const K: usize> FastLeaf<K> {
             self.weights[j] = (self.weights[j] + along * direction).max(0.0);
         }
         errors
+    }
+}
+
+/// Two local vertices of facet `i`.
+#[inline]
+fn two_others(i: usize) -> [usize; 2] {
+    match i {
+        0 => [1, 2],
+        1 => [0, 2],
+        _ => [0, 1],
     }
 }
