@@ -10,6 +10,7 @@
 use homeo_core::mesh::{CellId, Facet};
 
 use super::Foliation;
+use super::foliation::Step;
 use super::exact::Sense;
 use super::locate::FloatLocation;
 
@@ -17,9 +18,9 @@ use super::locate::FloatLocation;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Undecided;
 
-/// Bound of the rounding of one step, in barycentric coordinates (all are at most 1): an inverse, two
-/// products and a difference for each weight, and the sum that normalizes them, half an ulp each.
-const STEP_ROUNDING: f64 = 6.0 * f64::EPSILON;
+/// Bound of the rounding of one step, in barycentric coordinates (all are at most 1): a quotient, a
+/// product and a difference for each weight, and the sum that normalizes them, half an ulp each.
+const STEP_ROUNDING: f64 = 5.0 * f64::EPSILON;
 /// The box of errors is turned when the columns of the derivative are this close to parallel.
 const NEARLY_PARALLEL: f64 = 0.05;
 /// Errors beyond this mean that nothing is known any more.
@@ -33,11 +34,12 @@ pub(super) struct FastLeaf<const K: usize> {
     pub weights: [f64; K],
     /// Bit per weight that is exactly 0.
     zeros: u8,
-    /// The two columns of the derivative.
-    columns: [[f64; K]; 2],
+    derivative: [[f64; 2]; K],
     reach: [f64; 2],
-    /// Before the first facet: plain bounds of the errors of all weights.
-    start: Option<[f64; K]>,
+    /// Bounds of the errors of all weights; 0 for those that are exactly 0.
+    errors: [f64; K],
+    /// Whether the first facet is still to come, with no box yet but plain bounds.
+    is_starting: bool,
     /// Length travelled.
     pub length: f64,
     /// Bound of its error.
@@ -52,9 +54,10 @@ impl<const K: usize> FastLeaf<K> {
             cell: at.cell,
             weights: at.weights,
             zeros,
-            columns: [[0.0; K]; 2],
+            derivative: [[0.0; 2]; K],
             reach: [0.0; 2],
-            start: Some(at.errors),
+            errors: at.errors,
+            is_starting: true,
             length: 0.0,
             length_error: 0.0,
             steps: 0,
@@ -62,25 +65,26 @@ impl<const K: usize> FastLeaf<K> {
     }
 
     /// Bound of the error of weight `i`.
-    #[inline]
+    #[inline(always)]
     pub fn error(&self, i: usize) -> f64 {
-        if self.zeros >> i & 1 == 1 {
-            return 0.0;
-        }
-        match &self.start {
-            Some(errors) => errors[i],
-            None => {
-                let [u, v] = [self.columns[0][i], self.columns[1][i]];
-                // The factor covers the rounding of this very bound.
-                1.0000001 * (u.abs() * self.reach[0] + v.abs() * self.reach[1])
-            }
+        self.errors[i]
+    }
+
+    /// Bounds of all errors from the box.
+    #[inline(always)]
+    fn bound_errors(&mut self) {
+        for j in 0..K {
+            let [u, v] = self.derivative[j];
+            // The factor covers the rounding of this very bound.
+            let bound = 1.0000001 * (u.abs() * self.reach[0] + v.abs() * self.reach[1]);
+            self.errors[j] = if self.zeros >> j & 1 == 1 { 0.0 } else { bound };
         }
     }
 
     /// The facet through which the leaf leaves the current cell.
-    #[inline]
-    pub fn exit(&self, map: &Foliation<K>, sense: Sense) -> Result<usize, Undecided> {
-        let direction = &map.steps[self.cell.index()].direction;
+    #[inline(always)]
+    pub fn exit(&self, step: &Step, sense: Sense) -> Result<usize, Undecided> {
+        let direction = &step.direction;
         let sign = sense.exit_sign();
         let mut best = K;
         for j in (0..K).filter(|&j| direction[j].signum() == sign) {
@@ -105,46 +109,54 @@ impl<const K: usize> FastLeaf<K> {
         Ok(best)
     }
 
+    /// How long the leaf will be at facet `i` of the current cell.
+    #[inline(always)]
+    fn length_at(&self, step: &Step, i: usize) -> f64 {
+        if self.zeros >> i & 1 == 1 {
+            return self.length;
+        }
+        self.length + f64::from(step.length) * (self.weights[i] / f64::from(step.direction[i])).abs()
+    }
+
     /// Moves to facet `i` of the current cell.
-    #[inline]
-    pub fn move_to(&mut self, map: &Foliation<K>, i: usize) -> Result<(), Undecided> {
+    #[inline(always)]
+    pub fn move_to(&mut self, step: &Step, i: usize) -> Result<(), Undecided> {
         if self.zeros >> i & 1 == 1 {
             return self.settle(i);
         }
-        let step = &map.steps[self.cell.index()];
-        let directions: [f64; K] = std::array::from_fn(|j| f64::from(step.direction[j]));
-        let inverse = 1.0 / directions[i];
+        let offset = f64::from(step.direction[i]);
         let error = self.error(i);
-        let h = f64::from(step.length);
         // Weights move to b_j - (b_i / d_i) d_j, backwards and forwards alike.
-        let along = self.weights[i] * inverse;
+        let along = self.weights[i] / offset;
+        let h = f64::from(step.length);
         self.length += h * along.abs();
-        self.length_error += h * error * inverse.abs() + 4.0 * f64::EPSILON * self.length;
+        self.length_error += h * error / offset.abs() + 4.0 * f64::EPSILON * self.length;
+        let column = self.derivative[i];
+        let mut stays_zero = 0;
         for j in 0..K {
-            self.weights[j] -= along * directions[j];
+            let direction = f64::from(step.direction[j]);
+            if step.direction[j] == 0 && self.zeros >> j & 1 == 1 {
+                stays_zero |= 1 << j;
+                continue;
+            }
+            self.weights[j] -= along * direction;
+            let ratio = direction / offset;
+            if self.is_starting {
+                self.errors[j] += ratio.abs() * error + STEP_ROUNDING;
+            } else {
+                self.derivative[j][0] -= ratio * column[0];
+                self.derivative[j][1] -= ratio * column[1];
+            }
         }
         self.weights[i] = 0.0;
-        let stays_zero = (0..K).filter(|&j| step.direction[j] == 0).fold(0, |bits, j| bits | 1 << j);
-        self.zeros = self.zeros & stays_zero | 1 << i;
+        self.derivative[i] = [0.0; 2];
+        self.zeros = stays_zero | 1 << i;
         self.normalize();
-        if let Some(errors) = &mut self.start {
-            for j in 0..K {
-                errors[j] += (directions[j] * inverse).abs() * error + STEP_ROUNDING;
-            }
-            return self.settle(i);
-        }
-        for column in &mut self.columns {
-            let along = column[i] * inverse;
-            for j in 0..K {
-                column[j] -= along * directions[j];
-            }
-            column[i] = 0.0;
-        }
-        self.add_rounding(i)
+        if self.is_starting { self.settle(i) } else { self.add_rounding(i) }
     }
 
     /// Makes the weights add up to 1 again by the largest of them.
-    #[inline]
+    #[inline(always)]
     fn normalize(&mut self) {
         let mut largest = 0;
         let mut sum = 0.0;
@@ -158,76 +170,74 @@ impl<const K: usize> FastLeaf<K> {
     }
 
     /// Turns plain bounds into the box on the first facet.
+    #[inline]
     fn settle(&mut self, i: usize) -> Result<(), Undecided> {
-        let Some(errors) = self.start else { return Ok(()) };
-        self.rebuild(i, errors)?;
-        self.start = None;
-        Ok(())
+        if !self.is_starting {
+            return Ok(());
+        }
+        self.is_starting = false;
+        self.rebuild(i)
     }
 
     /// A box whose sides are two of the facet's own coordinates.
-    fn rebuild(&mut self, i: usize, errors: [f64; K]) -> Result<(), Undecided> {
-        let [p, q] = two_others(i);
+    #[cold]
+    fn rebuild(&mut self, i: usize) -> Result<(), Undecided> {
+        let errors = self.errors;
+        let mut others = (0..K).filter(|&j| j != i);
+        let [p, q] = [others.next().unwrap_or(0), others.next().unwrap_or(0)];
+        self.derivative = [[0.0; 2]; K];
         let bound = |j: usize| if self.zeros >> j & 1 == 1 { 0.0 } else { errors[j] + STEP_ROUNDING };
+        self.reach = [bound(p), if K == 4 { bound(q) } else { 0.0 }];
+        self.derivative[p] = [1.0, 0.0];
         if K == 4 {
-            self.reach = [bound(p), bound(q)];
-            self.set_box(i, [1.0, 0.0], [0.0, 1.0]);
+            self.derivative[q] = [0.0, 1.0];
+            self.derivative[K - 1 - usize::from(i == K - 1)] = [-1.0, -1.0];
         } else {
-            self.reach = [bound(p), 0.0];
-            self.columns = [[0.0; K]; 2];
-            self.columns[0][p] = 1.0;
-            self.columns[0][q] = -1.0;
+            self.derivative[q] = [-1.0, 0.0];
         }
+        self.bound_errors();
         if self.reach[0].max(self.reach[1]) < LARGEST_ERROR { Ok(()) } else { Err(Undecided) }
     }
 
-    /// Sets the columns of a box in a triangular facet by their first two coordinates; all three add up to 0.
-    fn set_box(&mut self, i: usize, first: [f64; 2], second: [f64; 2]) {
-        let [p, q] = two_others(i);
-        let r = 6 - i - p - q;
-        for (column, [x, y]) in self.columns.iter_mut().zip([first, second]) {
-            *column = [0.0; K];
-            (column[p], column[q], column[r]) = (x, y, -(x + y));
-        }
-    }
-
     /// Adds the rounding of one step, pulled back through the derivative.
-    #[inline]
+    #[inline(always)]
     fn add_rounding(&mut self, i: usize) -> Result<(), Undecided> {
         // The rows of the derivative add up to zero: any two of them will do.
-        let [p, q] = two_others(i);
-        let [u, v] = [[self.columns[0][p], self.columns[1][p]], [self.columns[0][q], self.columns[1][q]]];
+        let p = if i == 0 { 1 } else { 0 };
+        let q = if i <= 1 { 2 } else { 1 };
+        let (u, v) = (self.derivative[p], self.derivative[q]);
         if K == 3 {
             let steepness = u[0].abs();
             if !(1e-150..1e150).contains(&steepness) {
-                let errors = std::array::from_fn(|j| self.error(j));
-                return self.rebuild(i, errors);
+                self.bound_errors();
+                return self.rebuild(i);
             }
             self.reach[0] += STEP_ROUNDING / steepness;
-            return self.still_known();
+        } else {
+            let determinant = (u[0] * v[1] - u[1] * v[0]).abs();
+            let size = (u[0].abs() + v[0].abs()) * (u[1].abs() + v[1].abs());
+            if !(1e-150..1e150).contains(&determinant) || determinant < NEARLY_PARALLEL * size {
+                self.turn_box(i, p, q);
+                return self.still_known();
+            }
+            let scale = 1.001 * STEP_ROUNDING / determinant;
+            self.reach[0] += scale * (u[1].abs() + v[1].abs());
+            self.reach[1] += scale * (u[0].abs() + v[0].abs());
         }
-        let determinant = (u[0] * v[1] - u[1] * v[0]).abs();
-        let sizes = [u[0].abs() + v[0].abs(), u[1].abs() + v[1].abs()];
-        if !(1e-150..1e150).contains(&determinant) || determinant < NEARLY_PARALLEL * sizes[0] * sizes[1] {
-            self.turn_box(i);
-            return self.still_known();
-        }
-        let scale = 1.001 * STEP_ROUNDING / determinant;
-        self.reach[0] += scale * sizes[1];
-        self.reach[1] += scale * sizes[0];
-        // Errors grow slowly: a look now and then is enough, and each comparison looks for itself.
-        if self.steps % 16 == 0 { self.still_known() } else { Ok(()) }
+        self.still_known()
     }
 
-    fn still_known(&self) -> Result<(), Undecided> {
+    #[inline(always)]
+    fn still_known(&mut self) -> Result<(), Undecided> {
+        self.bound_errors();
         if (0..K).all(|j| self.error(j) < LARGEST_ERROR) { Ok(()) } else { Err(Undecided) }
     }
 
     /// Encloses the box of errors in one with perpendicular sides, the first along its longest side
     /// (the wrapping of Lohner's QR variant: a thin box stays thin).
-    fn turn_box(&mut self, i: usize) {
-        let [p, q] = two_others(i);
-        let side = |k: usize| [self.columns[k][p] * self.reach[k], self.columns[k][q] * self.reach[k]];
+    #[cold]
+    fn turn_box(&mut self, i: usize, p: usize, q: usize) {
+        let side = |k: usize| [self.derivative[p][k] * self.reach[k], self.derivative[q][k] * self.reach[k]];
         let sides = [side(0), side(1)];
         let length = |s: [f64; 2]| s[0].hypot(s[1]);
         let longest = if length(sides[0]) >= length(sides[1]) { sides[0] } else { sides[1] };
@@ -240,42 +250,72 @@ impl<const K: usize> FastLeaf<K> {
                 + 2.0 * STEP_ROUNDING
         };
         self.reach = [extent(along), extent(across)];
-        self.set_box(i, along, across);
+        let r = 6 - i - p - q;
+        self.derivative = [[0.0; 2]; K];
+        self.derivative[p] = [along[0], across[0]];
+        self.derivative[q] = [along[1], across[1]];
+        self.derivative[r] = [-(along[0] + along[1]), -(across[0] + across[1])];
     }
 
     /// Crosses facet `i`; gives the facet when the leaf ends there.
-    #[inline]
-    pub fn cross(&mut self, map: &Foliation<K>, i: usize) -> Option<Facet> {
+    #[inline(always)]
+    pub fn cross(&mut self, step: &Step, i: usize) -> Option<Facet> {
         self.steps += 1;
-        let step = &map.steps[self.cell.index()];
         let far = step.across[i];
         if far.is_none() {
             return Some(Facet::new(self.cell, i));
         }
-        let (weights, columns, zeros) = (self.weights, self.columns, self.zeros);
-        let new = far.opposite();
-        self.weights[new] = 0.0;
+        let (weights, derivative, errors, zeros) = (self.weights, self.derivative, self.errors, self.zeros);
+        self.weights = [0.0; K];
+        self.derivative = [[0.0; 2]; K];
+        self.errors = [0.0; K];
+        self.zeros = 1 << far.opposite();
         // Zero but after a step of no length, where it keeps the rows' sum at zero.
-        (self.columns[0][new], self.columns[1][new]) = (columns[0][i], columns[1][i]);
-        self.zeros = 1 << new;
+        self.derivative[far.opposite()] = derivative[i];
         for k in (0..K).filter(|&k| k != i) {
             let there = step.renumbered(i, k);
             self.weights[there] = weights[k];
-            self.columns[0][there] = columns[0][k];
-            self.columns[1][there] = columns[1][k];
+            self.derivative[there] = derivative[k];
+            self.errors[there] = errors[k];
             self.zeros |= (zeros >> k & 1) << there;
         }
         self.cell = far.cell();
         None
     }
 
+    /// Goes on to the next cell; gives the facet when the leaf ends.
+    #[inline(always)]
+    fn advance(&mut self, map: &Foliation<K>, sense: Sense) -> Result<Option<Facet>, Undecided> {
+        let step = &map.steps[self.cell.index()];
+        let i = self.exit(step, sense)?;
+        self.move_to(step, i)?;
+        Ok(self.cross(step, i))
+    }
+
     /// Follows the leaf to its end; gives the facet there.
     pub fn follow(&mut self, map: &Foliation<K>, sense: Sense) -> Result<Facet, Undecided> {
         loop {
-            let i = self.exit(map, sense)?;
-            self.move_to(map, i)?;
-            if let Some(end) = self.cross(map, i) {
+            if let Some(end) = self.advance(map, sense)? {
                 return Ok(end);
+            }
+        }
+    }
+
+    /// Follows a leaf to both ends by turns, so that the processor works on one while it waits for the other.
+    /// Gives the facets at the ends.
+    pub fn follow_both(
+        map: &Foliation<K>,
+        back: &mut Self,
+        ahead: &mut Self,
+    ) -> Result<[Facet; 2], Undecided> {
+        loop {
+            let start = back.advance(map, Sense::Backward)?;
+            let end = ahead.advance(map, Sense::Forward)?;
+            match (start, end) {
+                (None, None) => {}
+                (Some(start), Some(end)) => return Ok([start, end]),
+                (Some(start), None) => return Ok([start, ahead.follow(map, Sense::Forward)?]),
+                (None, Some(end)) => return Ok([back.follow(map, Sense::Backward)?, end]),
             }
         }
     }
@@ -285,16 +325,15 @@ impl<const K: usize> FastLeaf<K> {
     /// Gives bounds of the errors of the weights.
     pub fn follow_for(&mut self, map: &Foliation<K>, wanted: f64, wanted_error: f64) -> Result<[f64; K], Undecided> {
         loop {
-            let i = self.exit(map, Sense::Forward)?;
-            let before = *self;
-            self.move_to(map, i)?;
-            if self.length >= wanted {
-                *self = before;
+            let step = &map.steps[self.cell.index()];
+            let i = self.exit(step, Sense::Forward)?;
+            if self.length_at(step, i) >= wanted {
                 return Ok(self.go_inside(map, wanted, wanted_error));
             }
-            if self.cross(map, i).is_some() {
+            self.move_to(step, i)?;
+            if self.cross(step, i).is_some() {
                 // Rounding only: the leaf ends here.
-                return Ok(std::array::from_fn(|j| self.error(j)));
+                return Ok(self.errors);
             }
         }
     }
@@ -311,15 +350,5 @@ impl<const K: usize> FastLeaf<K> {
             self.weights[j] = (self.weights[j] + along * direction).max(0.0);
         }
         errors
-    }
-}
-
-/// Two local vertices of facet `i`.
-#[inline]
-fn two_others(i: usize) -> [usize; 2] {
-    match i {
-        0 => [1, 2],
-        1 => [0, 2],
-        _ => [0, 1],
     }
 }

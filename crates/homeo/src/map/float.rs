@@ -62,10 +62,8 @@ impl<const K: usize> Foliation<K> {
     }
 
     pub(super) fn fast_image(&self, at: &FloatLocation<K>) -> Result<Enclosed, Undecided> {
-        let mut back = FastLeaf::new(at);
-        let start = back.follow(self, Sense::Backward)?;
-        let mut ahead = FastLeaf::new(at);
-        ahead.follow(self, Sense::Forward)?;
+        let (mut back, mut ahead) = (FastLeaf::new(at), FastLeaf::new(at));
+        let [start, _] = FastLeaf::follow_both(self, &mut back, &mut ahead)?;
         let radius = f64::from(self.parts().centre.map_or(0, |c| c.length));
         let part = match self.parts().target {
             Target::Square | Target::Cube => Bounded { value: back.length, error: back.length_error },

@@ -74,11 +74,12 @@ impl<const K: usize> Foliation<K> {
         let mut leaf = FastLeaf::new(at);
         let mut points = vec![self.point(leaf.cell, &leaf.weights)];
         loop {
-            let i = leaf.exit(self, sense)?;
-            leaf.move_to(self, i)?;
+            let step = &self.steps[leaf.cell.index()];
+            let i = leaf.exit(step, sense)?;
+            leaf.move_to(step, i)?;
             let point = self.point(leaf.cell, &leaf.weights);
             points.push(point);
-            let end: Option<Facet> = leaf.cross(self, i);
+            let end: Option<Facet> = leaf.cross(step, i);
             if end.is_some() {
                 return Ok((points, point));
             }
