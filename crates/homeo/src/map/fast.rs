@@ -10,8 +10,8 @@
 use homeo_core::mesh::{CellId, Facet};
 
 use super::Foliation;
-use super::foliation::Step;
 use super::exact::Sense;
+use super::foliation::Step;
 use super::locate::FloatLocation;
 
 /// Rounding cannot tell through which facet the leaf goes on.
@@ -303,11 +303,7 @@ impl<const K: usize> FastLeaf<K> {
 
     /// Follows a leaf to both ends by turns, so that the processor works on one while it waits for the other.
     /// Gives the facets at the ends.
-    pub fn follow_both(
-        map: &Foliation<K>,
-        back: &mut Self,
-        ahead: &mut Self,
-    ) -> Result<[Facet; 2], Undecided> {
+    pub fn follow_both(map: &Foliation<K>, back: &mut Self, ahead: &mut Self) -> Result<[Facet; 2], Undecided> {
         loop {
             let start = back.advance(map, Sense::Backward)?;
             let end = ahead.advance(map, Sense::Forward)?;
