@@ -200,10 +200,10 @@ impl<const K: usize> Locator<K> {
         if let Some((cell, i)) = vertex {
             return Ok(self.child_of_weights(source, mesh, cell, std::array::from_fn(|k| f64::from(k == i))));
         }
-        if let Some((cell, p)) = best.filter(|(_, p)| p.distance_at_most < rival.min(self.off_surface())) {
-            if let Some(at) = self.child_float(source, mesh, cell, p.weights, p.errors) {
-                return Ok(Located::Float(at));
-            }
+        if let Some((cell, p)) = best.filter(|(_, p)| p.distance_at_most < rival.min(self.off_surface()))
+            && let Some(at) = self.child_float(source, mesh, cell, p.weights, p.errors)
+        {
+            return Ok(Located::Float(at));
         }
         self.nearest_exact(source, mesh, point).map(Located::Exact)
     }
@@ -229,10 +229,10 @@ impl<const K: usize> Locator<K> {
         let exact_point = rational_point(point);
         self.tree.query_box(&self.around(point), |index| {
             let cell = CellId::new(index);
-            if let Some((off, weights)) = nearest_exactly(&corners(source, cell), &exact_point) {
-                if best.as_ref().is_none_or(|(least, known, _)| (&off, cell) < (least, *known)) {
-                    best = Some((off, cell, weights));
-                }
+            if let Some((off, weights)) = nearest_exactly(&corners(source, cell), &exact_point)
+                && best.as_ref().is_none_or(|(least, known, _)| (&off, cell) < (least, *known))
+            {
+                best = Some((off, cell, weights));
             }
         });
         let slack = Rational::from_f64(self.off_surface()).unwrap_or(Rational::ZERO);

@@ -116,7 +116,7 @@ pub fn bumpy(size: usize) -> Disk {
 
 /// A surface folded flat like a fan of paper, nearly onto itself.
 pub fn folded(size: usize) -> Disk {
-    grid(size, size).moved(|[x, y, _]| [x / 8.0, y, if x as usize % 2 == 0 { 0.0 } else { 3.0 }])
+    grid(size, size).moved(|[x, y, _]| [x / 8.0, y, if (x as usize).is_multiple_of(2) { 0.0 } else { 3.0 }])
 }
 
 /// A triangle split and flipped at random, in the plane.
