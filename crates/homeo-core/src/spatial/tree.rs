@@ -110,23 +110,29 @@ impl Tree {
     /// # Complexity
     /// Logarithmic in the number of boxes, and linear in the number of those visited.
     pub fn query_box(&self, region: &Aabb, mut visit: impl FnMut(usize)) {
-        let mut stack = Vec::with_capacity(64);
-        if !self.nodes.is_empty() {
-            stack.push(0u32);
-        }
-        while let Some(index) = stack.pop() {
-            let node = &self.nodes[index as usize];
-            if !node.hull.meets(region) {
-                continue;
-            }
-            if node.is_leaf() {
-                for slot in node.start as usize..node.end as usize {
-                    if self.boxes[slot].meets(region) {
-                        visit(self.order[slot] as usize);
-                    }
+        // Medians halve: the tree is at most 32 levels deep, and one node waits per level.
+        let mut waiting = [0u32; 40];
+        let mut count = usize::from(!self.nodes.is_empty());
+        while count > 0 {
+            count -= 1;
+            let mut index = waiting[count];
+            // Down the left children at once, leaving the right ones for later.
+            loop {
+                let node = &self.nodes[index as usize];
+                if !node.hull.meets(region) {
+                    break;
                 }
-            } else {
-                stack.extend([node.right, index + 1]);
+                if node.is_leaf() {
+                    for slot in node.start as usize..node.end as usize {
+                        if self.boxes[slot].meets(region) {
+                            visit(self.order[slot] as usize);
+                        }
+                    }
+                    break;
+                }
+                waiting[count] = node.right;
+                count += 1;
+                index += 1;
             }
         }
     }

@@ -69,6 +69,10 @@ impl Bijection for FoliationMap {
         either!(self, map => map.inverse(point))
     }
 
+    fn forward_batch(&self, points: &[[f64; 3]]) -> Vec<Result<Enclosed, EvaluationError>> {
+        either!(self, map => map.forward_batch(points))
+    }
+
     fn forward_exact(&self, point: &[Rational; 3]) -> Result<[Rational; 3], EvaluationError> {
         either!(self, map => map.forward_exact(point))
     }

@@ -335,6 +335,10 @@ impl<const K: usize> Bijection for Foliation<K> {
         self.inverse_float(point)
     }
 
+    fn forward_batch(&self, points: &[[f64; 3]]) -> Vec<Result<Enclosed, EvaluationError>> {
+        self.forward_all(points)
+    }
+
     fn forward_exact(&self, point: &[Rational; 3]) -> Result<[Rational; 3], EvaluationError> {
         let at = self.locator.exact(self.source(), &self.parts().mesh, point)?;
         Ok(self.image_exact(&at))

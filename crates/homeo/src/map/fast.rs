@@ -285,8 +285,7 @@ impl<const K: usize> FastLeaf<K> {
 
     /// Goes on to the next cell; gives the facet when the leaf ends.
     #[inline(always)]
-    fn advance(&mut self, map: &Foliation<K>, sense: Sense) -> Result<Option<Facet>, Undecided> {
-        let step = &map.steps[self.cell.index()];
+    pub fn advance(&mut self, step: &Step, sense: Sense) -> Result<Option<Facet>, Undecided> {
         let i = self.exit(step, sense)?;
         self.move_to(step, i)?;
         Ok(self.cross(step, i))
@@ -295,7 +294,7 @@ impl<const K: usize> FastLeaf<K> {
     /// Follows the leaf to its end; gives the facet there.
     pub fn follow(&mut self, map: &Foliation<K>, sense: Sense) -> Result<Facet, Undecided> {
         loop {
-            if let Some(end) = self.advance(map, sense)? {
+            if let Some(end) = self.advance(&map.steps[self.cell.index()], sense)? {
                 return Ok(end);
             }
         }
@@ -305,8 +304,8 @@ impl<const K: usize> FastLeaf<K> {
     /// Gives the facets at the ends.
     pub fn follow_both(map: &Foliation<K>, back: &mut Self, ahead: &mut Self) -> Result<[Facet; 2], Undecided> {
         loop {
-            let start = back.advance(map, Sense::Backward)?;
-            let end = ahead.advance(map, Sense::Forward)?;
+            let start = back.advance(&map.steps[back.cell.index()], Sense::Backward)?;
+            let end = ahead.advance(&map.steps[ahead.cell.index()], Sense::Forward)?;
             match (start, end) {
                 (None, None) => {}
                 (Some(start), Some(end)) => return Ok([start, end]),

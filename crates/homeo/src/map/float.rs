@@ -32,19 +32,34 @@ enum Goal {
 
 impl<const K: usize> Foliation<K> {
     pub(super) fn forward_float(&self, point: [f64; 3]) -> Result<Enclosed, EvaluationError> {
-        let exact = match self.locator.float(self.source(), &self.parts().mesh, point)? {
-            Located::Exact(at) => at,
-            Located::Float(at) => {
-                if !self.is_centre(at.cell) {
-                    match self.fast_image(&at) {
-                        Ok(enclosed) if enclosed.radius <= self.accuracy() => return Ok(enclosed),
-                        _ => {}
-                    }
-                }
-                self.exactly(&at, point)?
-            }
+        let located = self.locator.float(self.source(), &self.parts().mesh, point)?;
+        let fast = self.fast_start(&located).and_then(|at| self.fast_image(at).ok());
+        self.forward_from(&located, fast, point)
+    }
+
+    /// Where a fast leaf through a point begins, if one may be tried.
+    pub(super) fn fast_start<'l>(&self, located: &'l Located<K>) -> Option<&'l FloatLocation<K>> {
+        match located {
+            Located::Float(at) if !self.is_centre(at.cell) => Some(at),
+            _ => None,
+        }
+    }
+
+    /// The answer of a fast leaf if it is good enough, or else of an exact one.
+    pub(super) fn forward_from(
+        &self,
+        located: &Located<K>,
+        fast: Option<Enclosed>,
+        point: [f64; 3],
+    ) -> Result<Enclosed, EvaluationError> {
+        if let Some(enclosed) = fast.filter(|enclosed| enclosed.radius <= self.accuracy()) {
+            return Ok(enclosed);
+        }
+        let image = match located {
+            Located::Exact(at) => self.image_exact(at),
+            Located::Float(at) => self.image_exact(&self.exactly(at, point)?),
         };
-        Ok(self.rounded_image(&self.image_exact(&exact)))
+        Ok(self.rounded_image(&image))
     }
 
     /// The exact location that a floating-point one stands for.
@@ -64,6 +79,16 @@ impl<const K: usize> Foliation<K> {
     pub(super) fn fast_image(&self, at: &FloatLocation<K>) -> Result<Enclosed, Undecided> {
         let (mut back, mut ahead) = (FastLeaf::new(at), FastLeaf::new(at));
         let [start, _] = FastLeaf::follow_both(self, &mut back, &mut ahead)?;
+        self.image_of_ends(start, &back, &ahead)
+    }
+
+    /// The image of the point from which two leaves were followed to their ends.
+    pub(super) fn image_of_ends(
+        &self,
+        start: Facet,
+        back: &FastLeaf<K>,
+        ahead: &FastLeaf<K>,
+    ) -> Result<Enclosed, Undecided> {
         let radius = f64::from(self.parts().centre.map_or(0, |c| c.length));
         let part = match self.parts().target {
             Target::Square | Target::Cube => Bounded { value: back.length, error: back.length_error },
@@ -78,7 +103,7 @@ impl<const K: usize> Foliation<K> {
         }
         let fraction =
             Bounded { value: (part.value / whole).clamp(0.0, 1.0), error: (part.error + whole_error) / safe + ULPS };
-        Ok(self.assembled(self.section_float(start, &back), fraction))
+        Ok(self.assembled(self.section_float(start, back), fraction))
     }
 
     /// The section value at the source end of a leaf.

@@ -3,6 +3,7 @@
 //! A map that exists is complete: it can be evaluated both ways, in `f64` with a stated error and
 //! exactly in rationals. What is proved about it lives in its certificate, not here.
 
+mod batch;
 mod evaluate;
 mod exact;
 mod fast;

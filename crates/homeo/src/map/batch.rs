@@ -1,0 +1,73 @@
+//! Many leaves at once.
+//!
+//! Which cell comes next on a leaf is known only when the last one has been crossed, so that on a large mesh
+//! a leaf waits for memory at most of its cells. Different leaves need not wait for one another: the cells where
+//! a band of leaves stand are fetched together, then each leaf crosses its own. Answers are those of
+//! one leaf after the other, to the last bit.
+
+use homeo_core::mesh::Facet;
+use rayon::prelude::*;
+
+use super::exact::Sense;
+use super::fast::{FastLeaf, Undecided};
+use super::{Enclosed, EvaluationError, Foliation};
+
+/// Leaves that are followed together.
+const BAND: usize = 16;
+/// Points that are located before their leaves are followed.
+const CHUNK: usize = 128;
+
+impl<const K: usize> Foliation<K> {
+    pub(super) fn forward_all(&self, points: &[[f64; 3]]) -> Vec<Result<Enclosed, EvaluationError>> {
+        points.par_chunks(CHUNK).flat_map_iter(|chunk| self.forward_chunk(chunk)).collect()
+    }
+
+    fn forward_chunk(&self, points: &[[f64; 3]]) -> Vec<Result<Enclosed, EvaluationError>> {
+        let locate = |&point: &[f64; 3]| self.locator.float(self.source(), &self.parts().mesh, point);
+        let located: Vec<_> = points.iter().map(locate).collect();
+        // Two for each point: the first goes back, the second ahead.
+        let starts = located.iter().flatten().filter_map(|located| self.fast_start(located));
+        let mut leaves: Vec<FastLeaf<K>> = starts.flat_map(|at| [FastLeaf::new(at), FastLeaf::new(at)]).collect();
+        let ends = self.follow_all(&mut leaves);
+        let mut images = leaves.chunks_exact(2).zip(ends.chunks_exact(2)).map(|(leaves, ends)| {
+            let [start, end] = [ends[0]?, ends[1]?];
+            debug_assert!(start.is_some() && end.is_some());
+            self.image_of_ends(start, &leaves[0], &leaves[1])
+        });
+        let answer = |(located, &point): (Result<_, _>, &[f64; 3])| {
+            let located = located?;
+            let fast = self.fast_start(&located).and_then(|_| images.next()?.ok());
+            self.forward_from(&located, fast, point)
+        };
+        located.into_iter().zip(points).map(answer).collect()
+    }
+
+    /// Follows leaves to their ends, those with an even number back and the others ahead.
+    fn follow_all(&self, leaves: &mut [FastLeaf<K>]) -> Vec<Result<Facet, Undecided>> {
+        let mut ends = vec![Err(Undecided); leaves.len()];
+        let mut band: Vec<usize> = (0..leaves.len().min(BAND)).collect();
+        let mut next = band.len();
+        let mut steps = [self.steps[0]; BAND];
+        while !band.is_empty() {
+            for (step, &number) in steps.iter_mut().zip(&band) {
+                *step = self.steps[leaves[number].cell.index()];
+            }
+            for place in (0..band.len()).rev() {
+                let number = band[place];
+                let sense = if number % 2 == 0 { Sense::Backward } else { Sense::Forward };
+                ends[number] = match leaves[number].advance(&steps[place], sense) {
+                    Ok(None) => continue,
+                    Ok(Some(end)) => Ok(end),
+                    Err(undecided) => Err(undecided),
+                };
+                if next < leaves.len() {
+                    band[place] = next;
+                    next += 1;
+                } else {
+                    band.swap_remove(place);
+                }
+            }
+        }
+        ends
+    }
+}
