@@ -37,7 +37,7 @@ impl<const K: usize> Foliation<K> {
     /// The section value at a point of a source facet.
     fn section_exact(&self, facet: Facet, weights: &[IBig; K]) -> [Rational; 3] {
         if let Section::Centre = self.parts().section {
-            return self.tetrahedron_point(&self.into_centre(facet, weights));
+            return self.tetrahedron_point(&self.inside_centre(facet, weights));
         }
         let values = self.section_index.values(&self.parts().section, &self.vertices_of(facet));
         let weights = self.facet_weights(facet, weights);
@@ -51,7 +51,7 @@ impl<const K: usize> Foliation<K> {
     }
 
     /// Weights in the centre cell of a point on a facet that the centre shares.
-    fn into_centre(&self, facet: Facet, weights: &[IBig; K]) -> [IBig; K] {
+    fn inside_centre(&self, facet: Facet, weights: &[IBig; K]) -> [IBig; K] {
         let step = &self.steps[facet.cell().index()];
         let mut inside: [IBig; K] = std::array::from_fn(|_| IBig::ZERO);
         for k in (0..K).filter(|&k| k != facet.opposite()) {
@@ -241,7 +241,7 @@ impl<const K: usize> Foliation<K> {
         let length = ahead.travelled();
         let part = &r * &(&length + &self.radius());
         if part <= self.radius() {
-            return Ok(self.in_centre(&self.into_centre(end, &ahead.at.weights), &part));
+            return Ok(self.in_centre(&self.inside_centre(end, &ahead.at.weights), &part));
         }
         Ok(self.along(at, &(&length - &(&part - &self.radius()))))
     }

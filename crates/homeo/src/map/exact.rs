@@ -95,7 +95,7 @@ impl<const K: usize> ExactLeaf<K> {
     /// Crosses facet `i`; gives the facet when the leaf ends there.
     pub fn cross(&mut self, map: &Foliation<K>, i: usize) -> Option<Facet> {
         self.steps += 1;
-        if self.steps % REDUCE_EVERY == 0 {
+        if self.steps.is_multiple_of(REDUCE_EVERY) {
             self.reduce();
         }
         let step = &map.steps[self.at.cell.index()];

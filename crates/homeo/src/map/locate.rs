@@ -200,8 +200,7 @@ impl<const K: usize> Locator<K> {
         if let Some((cell, i)) = vertex {
             return Ok(self.child_of_weights(source, mesh, cell, std::array::from_fn(|k| f64::from(k == i))));
         }
-        let certain = best.filter(|(_, p)| p.distance_at_most < rival.min(self.off_surface()));
-        if let Some((cell, p)) = certain
+        if let Some((cell, p)) = best.filter(|(_, p)| p.distance_at_most < rival.min(self.off_surface()))
             && let Some(at) = self.child_float(source, mesh, cell, p.weights, p.errors)
         {
             return Ok(Located::Float(at));

@@ -19,7 +19,7 @@ pub use foliation::{Centre, DEFAULT_ACCURACY, Foliation, FoliationParts};
 pub(crate) use nearest::is_flat;
 pub use sample::{LeafPolyline, distortions};
 pub use section::Section;
-pub use target::Target;
+pub use target::{BALL_CORNERS, Target, UnknownTarget};
 
 use homeo_core::number::Rational;
 use rayon::prelude::*;

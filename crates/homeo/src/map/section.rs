@@ -142,10 +142,10 @@ impl SectionIndex {
         let mut found: Option<(Facet, [IBig; 3])> = None;
         self.tree.as_ref()?.query_box(&region, |t| {
             let facet = self.facets[t];
-            if found.as_ref().is_none_or(|(best, _)| facet < *best) {
-                if let Some(weights) = exact_weights(&self.facet_values(parts, facet), q) {
-                    found = Some((facet, weights));
-                }
+            if found.as_ref().is_none_or(|(best, _)| facet < *best)
+                && let Some(weights) = exact_weights(&self.facet_values(parts, facet), q)
+            {
+                found = Some((facet, weights));
             }
         });
         found

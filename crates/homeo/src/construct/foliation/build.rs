@@ -42,7 +42,7 @@ impl<const K: usize> Stage<K> {
         masks: &mut [Vec<u8>],
     ) -> Result<Vec<CellId>, FoliationError> {
         let origins = self.mesh.star(source, &self.adjacency, &self.edges, stars)?;
-        let before: Vec<Vec<u8>> = masks.iter().map(|mask| mask.clone()).collect();
+        let before: Vec<Vec<u8>> = masks.to_vec();
         *self = Self::new(std::mem::replace(&mut self.mesh, RefinedMesh::unrefined(source)))?;
         for (mask, before) in masks.iter_mut().zip(before) {
             // A cell has at most one boundary facet here, so its children's boundary facets are parts of it.
