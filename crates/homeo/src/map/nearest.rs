@@ -213,8 +213,8 @@ mod tests {
             assert!(foot.distance_at_least <= distance * (1.0 + 1e-12));
             if foot.distance_at_most < f64::INFINITY {
                 assert!(distance <= foot.distance_at_most * (1.0 + 1e-12));
-                for i in 0..3 {
-                    let off = &weights[i] - &Rational::from_f64(foot.weights[i]).unwrap();
+                for (i, weight) in weights.iter().enumerate() {
+                    let off = weight - &Rational::from_f64(foot.weights[i]).unwrap();
                     assert!(off.to_f64().abs() <= foot.errors[i], "weight {i}: {} > {}", off.to_f64(), foot.errors[i]);
                 }
             }

@@ -54,14 +54,14 @@ impl<const K: usize> Stage<K> {
         Ok(origins)
     }
 
-    /// Stars all simplices that span from boundary to boundary. Gives whether there were any.
-    fn unspan(&mut self, source: &SourceMesh<K>, masks: &mut [Vec<u8>]) -> Result<bool, FoliationError> {
+    /// Stars all simplices that span from boundary to boundary. Whatever contains one of the new vertices has a
+    /// vertex inside, so that none is left to be starred again.
+    fn unspan(&mut self, source: &SourceMesh<K>, masks: &mut [Vec<u8>]) -> Result<(), FoliationError> {
         let stars = spanning_simplices(self.mesh.complex(), &self.adjacency, &self.edges);
-        if stars.is_empty() {
-            return Ok(false);
+        if !stars.is_empty() {
+            self.star(source, &stars, masks)?;
         }
-        self.star(source, &stars, masks)?;
-        Ok(true)
+        Ok(())
     }
 
     fn no_stars(&self) -> Stars {
@@ -128,7 +128,7 @@ impl<const K: usize> Build<'_, K> {
     fn run(&mut self) -> Result<Foliation<K>, FoliationError> {
         self.begin("prepare")?;
         let mut stage = Stage::new(RefinedMesh::unrefined(self.source))?;
-        while stage.unspan(self.source, &mut [])? {}
+        stage.unspan(self.source, &mut [])?;
         let mut surroundings = self.surround(&mut stage)?;
         let (order, field) = self.order(&mut stage, &mut surroundings)?;
 
@@ -238,7 +238,7 @@ impl<const K: usize> Build<'_, K> {
             let done = stars.is_empty();
             if !done {
                 stage.star(self.source, &stars, &mut carried)?;
-                while stage.unspan(self.source, &mut carried)? {}
+                stage.unspan(self.source, &mut carried)?;
             }
             [surroundings.source, surroundings.sink] = carried;
             if done {
