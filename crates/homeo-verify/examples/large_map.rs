@@ -22,7 +22,8 @@ fn volume(p: &[[f64; 3]; 4]) -> f64 {
 
 /// Splits every third cell at an inner vertex.
 fn refine(map: &mut Map) {
-    let mut r = support::Refinement { carrier_vertices: vec![], carrier_weights: vec![], cells: vec![], parents: vec![] };
+    let mut r =
+        support::Refinement { carrier_vertices: vec![], carrier_weights: vec![], cells: vec![], parents: vec![] };
     for (c, cell) in map.source_cells.iter().enumerate() {
         if c % 3 != 0 {
             r.cells.push(cell.clone());
@@ -52,7 +53,8 @@ fn main() {
     let mut random = Random(1);
     let centre = map.cells().len() / 2 + (n * n * n / 2 % 2) as usize;
     let (of_centre, parts) = (corners(&map.cells()[centre]), [0; 4].map(|_| 1.0 + 0.1 * random.unit()));
-    let middle = [0, 1, 2].map(|axis| (0..4).map(|i| parts[i] * of_centre[i][axis]).sum::<f64>() / parts.iter().sum::<f64>());
+    let middle =
+        [0, 1, 2].map(|axis| (0..4).map(|i| parts[i] * of_centre[i][axis]).sum::<f64>() / parts.iter().sum::<f64>());
     for (c, cell) in map.cells().clone().iter().enumerate() {
         let signs = [0, 1, 2, 3].map(|i| {
             let mut moved = corners(cell);
@@ -60,7 +62,15 @@ fn main() {
             if volume(&moved) < 0.0 { 1i8 } else { -1 }
         });
         let plus = signs.iter().filter(|s| **s > 0).count() as i8;
-        let row = signs.map(|s| if c == centre { 0 } else if s > 0 { 4 - plus } else { -plus });
+        let row = signs.map(|s| {
+            if c == centre {
+                0
+            } else if s > 0 {
+                4 - plus
+            } else {
+                -plus
+            }
+        });
         map.directions.push(row.to_vec());
     }
     map.lengths = vec![1000; map.directions.len()];
@@ -74,6 +84,10 @@ fn main() {
     for _ in 0..3 {
         let start = Instant::now();
         let verdict = verify_bytes(&bytes);
-        println!("{:.3} s: {}", start.elapsed().as_secs_f64(), format!("{verdict:?}").chars().take(160).collect::<String>());
+        println!(
+            "{:.3} s: {}",
+            start.elapsed().as_secs_f64(),
+            format!("{verdict:?}").chars().take(160).collect::<String>()
+        );
     }
 }
