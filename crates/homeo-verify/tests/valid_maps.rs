@@ -14,3 +14,12 @@ fn every_kind_of_map_is_certified() {
         }
     }
 }
+
+#[test]
+fn the_oracle_accepts_the_same_maps() {
+    for (name, map) in all_maps() {
+        let start = std::time::Instant::now();
+        assert!(support::oracle::is_valid(&map), "{name}");
+        println!("{name}: {} cells, {:?}", map.cells().len(), start.elapsed());
+    }
+}
