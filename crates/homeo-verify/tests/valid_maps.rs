@@ -1,4 +1,5 @@
 //! Hand-made maps of every kind are certified.
+#![allow(clippy::print_stdout)]
 
 mod support;
 
