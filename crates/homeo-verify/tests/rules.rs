@@ -235,16 +235,24 @@ fn rule_3_centre() {
         assert_refuted(&backwards, "3", "source or sink");
     }
     let mut parallel = map("disk");
-    parallel.directions[0] = parallel.directions[0].iter().map(|d| if *d > 0 { 0 } else { *d }).collect();
-    let rest: i8 = parallel.directions[0].iter().sum();
-    assert!(rest < 0, "the first cell has a boundary facet, its only inflow facet or one of two");
-    let mut at_the_rim = map("disk");
-    let centre = at_the_rim.manifest["centre"]["cell"].as_u64().expect("a cell") as usize;
-    at_the_rim.directions[centre] = vec![1, 1, -2];
-    at_the_rim.directions[0] = vec![0; 3];
-    at_the_rim.manifest["centre"]["cell"] = 0.into();
-    let witness = refute(&at_the_rim);
-    assert!(["2", "3"].contains(&witness.rule), "{witness:?}");
+    let rim = support::build::boundary(parallel.cells());
+    let (c, i) = (0..parallel.cells().len())
+        .flat_map(|c| (0..3).map(move |i| (c, i)))
+        .find(|&(c, i)| {
+            let facet: Vec<u32> = (0..3).filter(|&j| j != i).map(|j| parallel.cells()[c][j]).collect();
+            let inflow = parallel.directions[c].iter().filter(|d| **d > 0).count();
+            inflow == 2 && rim.contains(&facet.into_iter().collect())
+        })
+        .expect("a cell with an inflow facet besides the one in the boundary");
+    parallel.directions[c] = parallel.directions[c].iter().map(|d| d.signum()).collect();
+    parallel.directions[c][i] = 0;
+    assert_eq!(assert_refuted(&parallel, "3", "source or sink").cells, [c as u32]);
+    let (positions, cells) = square_grid(1);
+    let mut at_the_rim = Map::new("foliation", "disk", positions, cells);
+    at_the_rim.directions = vec![vec![0, 0, 0], vec![1, 1, -2]];
+    at_the_rim.lengths = vec![1, 1];
+    at_the_rim.manifest["centre"] = serde_json::json!({"cell": 0, "length": 1});
+    assert_refuted(&at_the_rim, "3", "lies in the boundary");
 }
 
 /// Six triangles around a vertex, the leaves running round it.
