@@ -10,6 +10,7 @@ mod order;
 mod points;
 mod random;
 mod refinement;
+mod refused;
 mod shapes;
 
 use std::io::Cursor;

@@ -128,6 +128,10 @@ impl<const K: usize> Build<'_, K> {
     fn run(&mut self) -> Result<Foliation<K>, FoliationError> {
         self.begin("prepare")?;
         let mut stage = Stage::new(RefinedMesh::unrefined(self.source))?;
+        if K == 3 && boundary_loop(stage.mesh.complex(), &stage.adjacency).is_empty() {
+            let what = "the boundary is not one loop round triangles of one orientation: the surface is no disk";
+            return Err(FoliationError::Input(what.to_owned()));
+        }
         stage.unspan(self.source, &mut [])?;
         let mut surroundings = self.surround(&mut stage)?;
         let (order, field) = self.order(&mut stage, &mut surroundings)?;
@@ -202,7 +206,13 @@ impl<const K: usize> Build<'_, K> {
         }
     }
 
+    /// Refines a mesh that is too coarse for two regions; once is enough for disks and balls.
     fn barycentric(&mut self, stage: &mut Stage<K>) -> Result<(), FoliationError> {
+        let children: usize = (1..=K).product();
+        let cells = stage.mesh.complex().cell_count();
+        if self.info.barycentric_refinements >= 2 || cells > self.params.most_cells / children {
+            return Err(regions::RegionError::TooCoarse.into());
+        }
         let mut stars = stage.no_stars();
         stars.cells.fill(true);
         stars.edges.fill(true);
