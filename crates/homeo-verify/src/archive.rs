@@ -139,38 +139,14 @@ fn slice(bytes: &[u8], at: usize, length: usize) -> Result<&[u8], Unreadable> {
     }
 }
 
-/// The checksum that zip uses, eight bytes at a time.
+/// The checksum that zip uses.
 fn crc32(bytes: &[u8]) -> u32 {
-    let tables = crc32_tables();
-    let mut state = u32::MAX;
-    let mut blocks = bytes.chunks_exact(8);
-    for block in &mut blocks {
-        let mut next = 0;
-        for (position, &byte) in block.iter().enumerate() {
-            let mixed = if position < 4 { byte ^ state.to_le_bytes()[position] } else { byte };
-            next ^= tables[7 - position][usize::from(mixed)];
-        }
-        state = next;
-    }
-    for &byte in blocks.remainder() {
-        state = tables[0][usize::from(state.to_le_bytes()[0] ^ byte)] ^ (state >> 8);
-    }
-    !state
-}
-
-/// `tables[k][b]`: the checksum's change by byte `b` with `k` zero bytes after it.
-fn crc32_tables() -> [[u32; 256]; 8] {
-    let mut tables = [[0; 256]; 8];
-    for (byte, entry) in (0u32..).zip(&mut tables[0]) {
+    let mut table = [0; 256];
+    for (byte, entry) in (0u32..).zip(&mut table) {
         *entry = (0..8).fold(byte, |value, _| (value >> 1) ^ (0xedb8_8320 * (value & 1)));
     }
-    for later in 1..8 {
-        for byte in 0..256 {
-            let previous = tables[later - 1][byte];
-            tables[later][byte] = tables[0][usize::from(previous.to_le_bytes()[0])] ^ (previous >> 8);
-        }
-    }
-    tables
+    let step = |state: u32, byte: &u8| table[usize::from(state.to_le_bytes()[0] ^ byte)] ^ (state >> 8);
+    !bytes.iter().fold(u32::MAX, step)
 }
 
 #[cfg(test)]

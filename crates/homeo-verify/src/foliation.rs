@@ -42,8 +42,8 @@ pub(crate) fn check_foliation(
     foliation.check_acyclic()?;
     let on_source = foliation.vertices_of(&foliation.source);
     let on_sink = foliation.vertices_of(&foliation.sink);
-    foliation.check_vertices(&on_source, &on_sink)?;
     let edges = foliation.check_edges()?;
+    foliation.check_vertices(&on_source, &on_sink)?;
     foliation.check_regions_apart(&on_source, &on_sink)?;
     let region = foliation.check_region_shapes(target)?;
     check_section(&foliation, &region, data, target)?;

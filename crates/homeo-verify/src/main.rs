@@ -1,9 +1,8 @@
 //! `homeo-verify MAP`: checks one map file and says what was proved.
 
-#![allow(clippy::print_stdout, clippy::print_stderr)] // this is what a command-line program is for
-
-use homeo_verify::{Claim, Unreadable, Verdict, Witness, verify_file};
-use serde_json::json;
+use homeo_verify::{Unreadable, Verdict, verify_file};
+use serde_json::{Value, json};
+use std::io::Write;
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -20,112 +19,91 @@ Exit code: 0 certified, 2 wrong usage, 3 unreadable or about another mesh, 4 und
 Example: homeo-verify spot.homeo --json
 ";
 
-struct Arguments {
-    map: String,
-    as_json: bool,
-    source_hash: Option<String>,
-}
-
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    if arguments.iter().any(|argument| argument == "--help" || argument == "-h") {
-        print!("{HELP}");
-        return ExitCode::SUCCESS;
-    }
-    let Some(arguments) = parse(&arguments) else {
-        eprint!("{HELP}");
-        return ExitCode::from(2);
-    };
-    let answer = verify_file(arguments.map.as_ref());
-    let code = match (&answer, &arguments.source_hash) {
-        (Ok(Verdict::Certified(claim)), Some(hash)) if !claim.source_sha256.eq_ignore_ascii_case(hash) => {
-            report_other_mesh(claim, hash, arguments.as_json);
-            return ExitCode::from(3);
-        }
-        (Ok(Verdict::Certified(_)), _) => 0,
-        (Err(_), _) => 3,
-        (Ok(Verdict::Undecided(_)), _) => 4,
-        (Ok(Verdict::Refuted(_)), _) => 5,
-    };
-    if arguments.as_json {
-        println!("{}", as_json(&answer));
+    let (text, code) = if arguments.iter().any(|argument| argument == "--help" || argument == "-h") {
+        (HELP.to_owned(), 0)
     } else {
-        print_for_people(&answer);
-    }
+        run(&arguments).unwrap_or((HELP.to_owned(), 2))
+    };
+    // A reader that went away is no reason to fail: the verdict is in the exit code.
+    let _ = if code == 2 { std::io::stderr().write_all(text.as_bytes()) } else { print(&text) };
     ExitCode::from(code)
 }
 
-fn parse(arguments: &[String]) -> Option<Arguments> {
+fn print(text: &str) -> std::io::Result<()> {
+    std::io::stdout().write_all(text.as_bytes())
+}
+
+/// What to print and the exit code; `None` for wrong usage.
+fn run(arguments: &[String]) -> Option<(String, u8)> {
     let (mut map, mut as_json, mut source_hash) = (None, false, None);
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         match argument.as_str() {
             "--json" => as_json = true,
-            "--source-hash" => source_hash = Some(rest.next()?.clone()),
+            "--source-hash" => source_hash = Some(rest.next()?),
             option if option.starts_with("--") => return None,
             _ if map.is_some() => return None,
-            _ => map = Some(argument.clone()),
+            _ => map = Some(argument),
         }
     }
-    Some(Arguments { map: map?, as_json, source_hash })
+    let (report, code) = report(verify_file(map?.as_ref()), source_hash);
+    Some((if as_json { format!("{report}\n") } else { for_people(&report) }, code))
 }
 
-fn report_other_mesh(claim: &Claim, expected: &str, in_json: bool) {
-    let found = &claim.source_sha256;
-    if in_json {
-        println!("{}", json!({"verdict": "other source", "source_sha256": found, "expected_sha256": expected}));
-    } else {
-        println!("other source: the map is about the mesh {found}, not {expected}");
-    }
-}
-
-fn as_json(answer: &Result<Verdict, Unreadable>) -> serde_json::Value {
+/// The verdict as an object whose first field is the answer, and the exit code.
+fn report(answer: Result<Verdict, Unreadable>, source_hash: Option<&String>) -> (Value, u8) {
     match answer {
-        Ok(Verdict::Certified(claim)) => json!({
-            "verdict": "certified", "statement": claim.statement, "kind": claim.kind, "target": claim.target,
-            "checked": claim.checked.iter().map(|(what, count)| json!({"what": what, "count": count})).collect::<Vec<_>>(),
-            "source_sha256": claim.source_sha256, "limits": claim.limits,
-        }),
-        Ok(Verdict::Refuted(witness)) => json!({
-            "verdict": "refuted", "rule": witness.rule, "message": witness.message,
-            "cells": witness.cells, "vertices": witness.vertices, "points": witness.points,
-        }),
-        Ok(Verdict::Undecided(obstacle)) => {
-            json!({"verdict": "undecided", "message": obstacle.message, "remedy": obstacle.remedy})
+        Ok(Verdict::Certified(claim))
+            if source_hash.is_some_and(|hash| !hash.eq_ignore_ascii_case(&claim.source_sha256)) =>
+        {
+            (
+                json!({"verdict": "other source", "source_sha256": claim.source_sha256, "expected_sha256": source_hash}),
+                3,
+            )
         }
-        Err(error) => json!({"verdict": "unreadable", "message": error.message}),
-    }
-}
-
-fn print_for_people(answer: &Result<Verdict, Unreadable>) {
-    match answer {
         Ok(Verdict::Certified(claim)) => {
-            println!("certified: {}", claim.statement);
-            println!("checked:");
-            claim.checked.iter().for_each(|(what, count)| println!("  {count:>10}  {what}"));
-            println!("source: sha256 {}", claim.source_sha256);
-            println!("limits:");
-            claim.limits.iter().for_each(|limit| println!("  {limit}"));
+            let checked: Vec<Value> =
+                claim.checked.iter().map(|(what, count)| json!({"what": what, "count": count})).collect();
+            let report = json!({
+                "verdict": "certified", "statement": claim.statement, "kind": claim.kind, "target": claim.target,
+                "checked": checked, "source_sha256": claim.source_sha256, "limits": claim.limits,
+            });
+            (report, 0)
         }
-        Ok(Verdict::Refuted(witness)) => print_witness(witness),
+        Ok(Verdict::Refuted(witness)) => {
+            let report = json!({
+                "verdict": "refuted", "rule": witness.rule, "message": witness.message,
+                "cells": witness.cells, "vertices": witness.vertices, "points": witness.points,
+            });
+            (report, 5)
+        }
         Ok(Verdict::Undecided(obstacle)) => {
-            println!("undecided: {}\nremedy: {}", obstacle.message, obstacle.remedy);
+            (json!({"verdict": "undecided", "message": obstacle.message, "remedy": obstacle.remedy}), 4)
         }
-        Err(error) => println!("{error}"),
+        Err(error) => (json!({"verdict": "unreadable", "message": error.message}), 3),
     }
 }
 
-fn print_witness(witness: &Witness) {
-    println!("refuted by rule {}: {}", witness.rule, witness.message);
-    let shown = 20;
-    let list = |name: &str, numbers: &[u32]| {
-        let more = if numbers.len() > shown { ", ..." } else { "" };
-        let text: Vec<String> = numbers.iter().take(shown).map(u32::to_string).collect();
-        if !numbers.is_empty() {
-            println!("  {name}: {}{more}", text.join(", "));
+/// The same, one line for each field and each item of a list (at most twenty).
+fn for_people(report: &Value) -> String {
+    let mut text = format!("{}\n", report["verdict"].as_str().unwrap_or_default());
+    for (key, value) in report.as_object().into_iter().flatten().filter(|(key, _)| *key != "verdict") {
+        let plain = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        match value.as_array() {
+            None => text += &format!("{key}: {}\n", plain(value)),
+            Some(items) if items.is_empty() => {}
+            Some(items) => {
+                text += &format!("{key} ({}):\n", items.len());
+                for item in items.iter().take(20) {
+                    text += &match (item.get("count"), item.get("what").and_then(Value::as_str)) {
+                        (Some(count), Some(what)) => format!("  {:>10}  {what}\n", count.to_string()),
+                        _ => format!("  {}\n", plain(item)),
+                    };
+                }
+            }
         }
-    };
-    list("cells", &witness.cells);
-    list("vertices", &witness.vertices);
-    witness.points.iter().take(shown).for_each(|[x, y, z]| println!("  at {x} {y} {z}"));
+    }
+    text
 }

@@ -11,7 +11,6 @@ use dashu_base::BitTest;
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 use std::collections::BTreeSet;
-use std::ops::{Add, Mul, Sub};
 
 /// Sums of volumes with longer denominators than this are not attempted.
 const MAXIMUM_DENOMINATOR_BITS: usize = 4096;
@@ -70,11 +69,7 @@ fn check_volumes(map: &MapFile, refinement: &Refinement, source: &Complex, refin
             volumes.push(volume(map, refinement, source.cell(parent), refined.cell(c as usize), c as usize)?);
         }
         // R4: the children's volumes, in units of the parent's, add up to exactly 1.
-        let sum_is_one = match sum_in_machine_numbers(&volumes) {
-            Some(sum) => sum == (1, 1),
-            None => sum_is_one(&volumes)?,
-        };
-        if !sum_is_one {
+        if sum(&volumes)? != RBig::ONE {
             let message = format!("the cells in source cell {parent} do not have its volume together");
             let own: Vec<usize> = own.iter().map(|&c| c as usize).collect();
             return refuted("R4", message, &own, source.cell(parent));
@@ -83,93 +78,50 @@ fn check_volumes(map: &MapFile, refinement: &Refinement, source: &Complex, refin
     Ok(())
 }
 
-/// A positive fraction: a determinant over the product of weight sums.
-enum Volume {
-    Small(i128, i128),
-    Large(IBig, UBig),
-}
-
-/// The volume of a cell in units of its parent's.
-fn volume(map: &MapFile, refinement: &Refinement, parent: &[u32], cell: &[u32], c: usize) -> Checked<Volume> {
-    let size = cell.len();
-    let mut weights = [[0i64; 4]; 4];
+/// The volume of a cell in units of its parent's: a determinant over the product of weight sums.
+fn volume(map: &MapFile, refinement: &Refinement, parent: &[u32], cell: &[u32], c: usize) -> Checked<RBig> {
+    if cell == parent {
+        return Ok(RBig::ONE); // a cell that was not divided
+    }
+    let mut weights: [[IBig; 4]; 4] = Default::default();
+    let mut product = UBig::ONE;
     for (row, &vertex) in weights.iter_mut().zip(cell) {
+        let mut total = 0u128;
         for (source_vertex, weight) in carrier(map, refinement, vertex) {
             // R2: every vertex of the cell lies in the parent.
             match parent.iter().position(|&v| v == source_vertex) {
-                Some(column) => row[column] = weight,
+                Some(column) => row[column] = IBig::from(weight),
                 None => return refuted("R2", format!("cell {c} does not lie in its parent"), &[c], &[vertex]),
             }
+            total += u128::from(weight.unsigned_abs());
         }
+        product *= UBig::from(total);
     }
-    let small = weights.iter().flatten().all(|&weight| weight < 1 << 28);
-    let volume = if small {
-        let rows = weights.map(|row| row.map(i128::from));
-        Volume::Small(determinant(&rows, size), rows[..size].iter().map(|row| row.iter().sum::<i128>()).product())
-    } else {
-        let rows = weights.map(|row| row.map(IBig::from));
-        let denominator: IBig = rows[..size].iter().map(|row| row.iter().sum::<IBig>()).product();
-        Volume::Large(determinant(&rows, size), UBig::try_from(denominator).unwrap_or(UBig::ONE))
-    };
     // R3: the cell has the orientation of its parent.
-    let positive = match &volume {
-        Volume::Small(determinant, _) => *determinant > 0,
-        Volume::Large(determinant, _) => *determinant > IBig::ZERO,
-    };
-    if positive { Ok(volume) } else { refuted("R3", format!("cell {c} is flat or turned over"), &[c], cell) }
-}
-
-/// The determinant of the upper left `size` by `size` block, by its first row.
-fn determinant<T>(m: &[[T; 4]; 4], size: usize) -> T
-where
-    T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
-{
-    let two =
-        |r: usize, a: usize, b: usize| m[r][a].clone() * m[r + 1][b].clone() - m[r][b].clone() * m[r + 1][a].clone();
-    let three = |r: usize, a: usize, b: usize, c: usize| {
-        m[r][a].clone() * two(r + 1, b, c) - m[r][b].clone() * two(r + 1, a, c) + m[r][c].clone() * two(r + 1, a, b)
-    };
-    if size == 3 {
-        return three(0, 0, 1, 2);
+    let determinant = determinant(&weights, 0, &[0, 1, 2, 3][..cell.len()]);
+    if determinant <= IBig::ZERO || product == UBig::ZERO {
+        return refuted("R3", format!("cell {c} is flat or turned over"), &[c], cell);
     }
-    m[0][0].clone() * three(1, 1, 2, 3) - m[0][1].clone() * three(1, 0, 2, 3) + m[0][2].clone() * three(1, 0, 1, 3)
-        - m[0][3].clone() * three(1, 0, 1, 2)
+    Ok(RBig::from_parts(determinant, product))
 }
 
-/// The sum in lowest terms, when nothing overflows.
-fn sum_in_machine_numbers(volumes: &[Volume]) -> Option<(i128, i128)> {
-    let mut sum = (0i128, 1i128);
-    for volume in volumes {
-        let Volume::Small(numerator, denominator) = volume else { return None };
-        if sum.1 != *denominator {
-            let left = sum.0.checked_mul(*denominator)?;
-            sum = (left.checked_add(numerator.checked_mul(sum.1)?)?, sum.1.checked_mul(*denominator)?);
-        } else {
-            sum.0 = sum.0.checked_add(*numerator)?;
-        }
-        let divisor = greatest_common_divisor(sum.0, sum.1);
-        sum = (sum.0 / divisor, sum.1 / divisor);
+/// The determinant of the rows from `row` on and of these columns, by its first row; most entries are zero.
+fn determinant(matrix: &[[IBig; 4]; 4], row: usize, columns: &[usize]) -> IBig {
+    let mut sum = IBig::ZERO;
+    for (k, &column) in columns.iter().enumerate().filter(|&(_, &column)| matrix[row][column] != IBig::ZERO) {
+        let others: Vec<usize> = columns.iter().copied().filter(|&other| other != column).collect();
+        let term =
+            &matrix[row][column] * if others.is_empty() { IBig::ONE } else { determinant(matrix, row + 1, &others) };
+        sum += if k % 2 == 0 { term } else { -term };
     }
-    Some(sum)
+    sum
 }
 
-fn greatest_common_divisor(mut a: i128, mut b: i128) -> i128 {
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
-}
-
-/// The same with numbers of any length.
-fn sum_is_one(volumes: &[Volume]) -> Checked<bool> {
+/// The sum of fractions, unless their common denominator grows too long.
+fn sum(volumes: &[RBig]) -> Checked<RBig> {
     let mut sum = RBig::ZERO;
     for volume in volumes {
-        sum += match volume {
-            Volume::Small(numerator, denominator) => {
-                RBig::from_parts(IBig::from(*numerator), UBig::try_from(*denominator).unwrap_or(UBig::ONE))
-            }
-            Volume::Large(numerator, denominator) => RBig::from_parts(numerator.clone(), denominator.clone()),
-        };
+        sum += volume;
         if sum.denominator().bit_len() > MAXIMUM_DENOMINATOR_BITS {
             return undecided(
                 "the volumes in one source cell have a common denominator of more than 4096 bits",
@@ -177,7 +129,7 @@ fn sum_is_one(volumes: &[Volume]) -> Checked<bool> {
             );
         }
     }
-    Ok(sum == RBig::ONE)
+    Ok(sum)
 }
 
 /// R5 and R6: facets have a cell on either side, or lie in the boundary of the source.

@@ -205,14 +205,13 @@ fn directions(
         let noisy: Vec<f64> = keys.iter().map(|key| key + f64::from(trial) * 0.01 * random.unit()).collect();
         let mut wanted: Vec<usize> = (0..cells.len()).filter(|&c| Some(c) != skip).collect();
         wanted.sort_by(|&a, &b| noisy[a].total_cmp(&noisy[b]));
-        directions_in_order(cells, regions.0.clone(), regions.1.clone(), &wanted)
+        directions_in_order(cells, regions.clone(), &wanted)
     })
 }
 
 fn directions_in_order(
     cells: &[Vec<u32>],
-    source: Vec<Face>,
-    sink: Vec<Face>,
+    (source, sink): (Vec<Face>, Vec<Face>),
     wanted: &[usize],
 ) -> Option<Vec<Vec<i8>>> {
     let mut around: BTreeMap<Face, Vec<usize>> = BTreeMap::new();
@@ -398,4 +397,12 @@ fn linear_maps() -> Vec<(&'static str, Map)> {
         ("piecewise-linear square, refined", fine_square),
         ("piecewise-linear cube, refined", fine_cube),
     ]
+}
+
+/// Turns the flow across facet `i`, with magnitudes that keep the sum zero; `false` if no flow is left.
+pub fn turn(row: &mut [i8], i: usize) -> bool {
+    let signs: Vec<i8> = row.iter().enumerate().map(|(j, d)| if i == j { -d.signum() } else { d.signum() }).collect();
+    let [plus, minus] = [1, -1].map(|sign| signs.iter().filter(|s| **s == sign).count() as i8);
+    row.iter_mut().zip(&signs).for_each(|(d, s)| *d = if *s > 0 { minus } else { -plus * i8::from(*s < 0) });
+    plus > 0 && minus > 0
 }

@@ -73,7 +73,11 @@ pub fn content_hash(map: &Map) -> String {
     }
     bytes.extend(little_endian!(map.positions));
     bytes.extend(little_endian!(map.source_cells));
-    Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    sha256(&bytes)
+}
+
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// All entries of the file, in the order in which they are written.
