@@ -102,3 +102,34 @@ pub(crate) fn shape(complex: &Complex, edge_count: usize, rule: &'static str) ->
     };
     Ok(Shape { components, euler, boundaries })
 }
+
+/// Given rules 1 to 6 the theorem implies the topology of the regions, so no map file can break that sentence of
+/// rule 8 alone: its negative controls are here.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::complex::Rules;
+
+    fn numbers(size: usize, cells: &[u32]) -> Option<(usize, i64, usize)> {
+        let complex = Complex::new(size, cells.to_vec(), 12, Rules { cells: "8", facets: "8" }).ok()?;
+        let shape = check_manifold(&complex, "8", "test").ok()?;
+        Some((shape.components, shape.euler, shape.boundaries))
+    }
+
+    #[test]
+    fn regions_of_another_topology_are_told_apart() {
+        assert_eq!(numbers(3, &[0, 1, 2]), Some((1, 1, 1)), "disk");
+        assert_eq!(numbers(3, &[0, 1, 2, 0, 1, 3, 0, 2, 3, 1, 2, 3]), Some((1, 2, 0)), "sphere");
+        let annulus = [0, 3, 1, 1, 3, 4, 1, 4, 2, 2, 4, 5, 2, 5, 0, 0, 5, 3];
+        assert_eq!(numbers(3, &annulus), Some((1, 0, 2)), "annulus");
+        let moebius = [0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4, 0, 4, 0, 1];
+        assert_eq!(numbers(3, &moebius), Some((1, 0, 1)), "moebius strip");
+        assert_eq!(numbers(3, &[0, 1, 2, 3, 4, 5]), Some((2, 2, 2)), "two disks");
+        assert_eq!(numbers(3, &[0, 1, 2, 0, 3, 4]), None, "two triangles at a vertex");
+        assert_eq!(numbers(2, &[0, 1, 1, 2]), Some((1, 1, 2)), "arc");
+        assert_eq!(numbers(2, &[0, 1, 1, 2, 2, 0]), Some((1, 0, 0)), "circle");
+        assert_eq!(numbers(2, &[0, 1, 2, 3]), Some((2, 2, 4)), "two arcs");
+        assert_eq!(numbers(2, &[0, 1, 0, 2, 0, 3]), None, "three edges at a vertex");
+        assert_eq!(numbers(3, &[]), Some((0, 0, 0)), "nothing");
+    }
+}
