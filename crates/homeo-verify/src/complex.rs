@@ -9,8 +9,11 @@ use crate::verdict::{Checked, refuted, undecided};
 /// "No cell on the other side."
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// The edges of a tetrahedron, by its own numbering.
-pub(crate) const TETRAHEDRON_EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+/// The vertices of a cell as sets of local indices, bit by bit.
+pub(crate) const VERTICES: [u8; 4] = [0b0001, 0b0010, 0b0100, 0b1000];
+
+/// The edges of a tetrahedron in the same way.
+pub(crate) const EDGES: [u8; 6] = [0b0011, 0b0101, 0b1001, 0b0110, 0b1010, 0b1100];
 
 /// A complex of cells with `size` vertices each: 4 tetrahedra, 3 triangles, 2 edges, 1 points.
 pub(crate) struct Complex {
@@ -53,17 +56,17 @@ impl Complex {
     fn find_neighbours(&mut self, rules: Rules) -> Checked {
         let mut facets: Vec<u128> = (0..self.across.len()).map(|slot| pack(self.facet(slot), slot)).collect();
         facets.sort_unstable();
-        for group in facets.chunk_by(|a, b| a >> 32 == b >> 32) {
+        for group in facets.chunk_by(is_same_face) {
             match *group {
                 [_] => {}
                 [a, b] => {
-                    let (a, b) = (unpack_slot(a), unpack_slot(b));
+                    let (a, b) = (place(a), place(b));
                     self.across[a] = b as u32;
                     self.across[b] = a as u32;
                 }
                 _ => {
-                    let cells: Vec<usize> = group.iter().map(|&key| unpack_slot(key) / self.size).collect();
-                    let (facet, length) = self.facet(unpack_slot(group[0]));
+                    let cells: Vec<usize> = group.iter().map(|&key| place(key) / self.size).collect();
+                    let (facet, length) = self.facet(place(group[0]));
                     return refuted(rules.facets, "more than two cells share a facet", &cells, &facet[..length]);
                 }
             }
@@ -116,12 +119,7 @@ impl Complex {
 
     /// The sorted vertices of a facet, and their number.
     pub(crate) fn facet(&self, slot: usize) -> ([u32; 3], usize) {
-        let mut facet = [0; 3];
-        let (cell, opposite) = (self.cell(slot / self.size), slot % self.size);
-        let others = cell.iter().enumerate().filter(|(i, _)| *i != opposite);
-        facet.iter_mut().zip(others).for_each(|(place, (_, &v))| *place = v);
-        facet[..self.size - 1].sort_unstable();
-        (facet, self.size - 1)
+        self.face(slot / self.size, ((1 << self.size) - 1) ^ (1 << (slot % self.size)))
     }
 
     /// Whether the orientation that the cell's order induces on a facet is that of the facet's sorted vertices.
@@ -146,19 +144,30 @@ impl Complex {
         Complex::new(self.size - 1, vertices, self.vertex_count, Rules { cells: rule, facets: rule })
     }
 
-    /// All edges of all tetrahedra, sorted: see [`edge_vertices`] and [`edge_place`].
-    pub(crate) fn sorted_edges(&self) -> Vec<u128> {
-        let cells = if self.size == 4 { self.count() } else { 0 };
-        let mut edges = Vec::with_capacity(6 * cells);
-        for c in 0..cells {
-            let cell = self.cell(c);
-            for (e, [i, j]) in TETRAHEDRON_EDGES.iter().enumerate() {
-                let (low, high) = (cell[*i].min(cell[*j]), cell[*i].max(cell[*j]));
-                edges.push(pack(([low, high, 0], 2), 6 * c + e));
-            }
+    /// The kinds of faces of codimension two or more at which links and rule 5 are checked: vertices, edges of tetrahedra.
+    pub(crate) fn small_faces(&self) -> [&'static [u8]; 2] {
+        [&VERTICES[..self.size], if self.size == 4 { &EDGES } else { &[] }]
+    }
+
+    /// All faces of one kind of all cells, sorted, so that equal ones form a group; the place is `kind.len() * c + k`.
+    pub(crate) fn sorted_faces(&self, kind: &[u8]) -> Vec<u128> {
+        let mut faces = Vec::with_capacity(kind.len() * self.count());
+        for c in 0..self.count() {
+            faces.extend(kind.iter().enumerate().map(|(k, &mask)| pack(self.face(c, mask), kind.len() * c + k)));
         }
-        edges.sort_unstable();
-        edges
+        faces.sort_unstable();
+        faces
+    }
+
+    /// The sorted vertices of a face of at most three vertices, and their number.
+    pub(crate) fn face(&self, c: usize, mask: u8) -> ([u32; 3], usize) {
+        let (mut face, mut length) = ([0; 3], 0);
+        for (_, &v) in self.cell(c).iter().enumerate().filter(|(i, _)| mask >> i & 1 == 1) {
+            face[length] = v;
+            length += 1;
+        }
+        face[..length].sort_unstable();
+        (face, length)
     }
 }
 
@@ -167,18 +176,14 @@ fn pack((vertices, length): ([u32; 3], usize), place: usize) -> u128 {
     vertices[..length].iter().fold(0, |key, &v| key << 32 | u128::from(v)) << 32 | place as u128
 }
 
-fn unpack_slot(key: u128) -> usize {
+/// The place, for facets the slot, of a sorted face.
+pub(crate) fn place(key: u128) -> usize {
     (key & u128::from(u32::MAX)) as usize
 }
 
-/// The vertices of a sorted edge.
-pub(crate) fn edge_vertices(key: u128) -> [u32; 2] {
-    [(key >> 64) as u32, (key >> 32) as u32]
-}
-
-/// The cell of a sorted edge, and which of [`TETRAHEDRON_EDGES`] it is there.
-pub(crate) fn edge_place(key: u128) -> (usize, usize) {
-    (unpack_slot(key) / 6, unpack_slot(key) % 6)
+/// Whether two sorted faces have the same vertices.
+pub(crate) fn is_same_face(a: &u128, b: &u128) -> bool {
+    a >> 32 == b >> 32
 }
 
 /// Sets that grow together; the smallest member stands for its set.

@@ -3,7 +3,7 @@
 //! *Theorem* (`docs/certificate-format-v1.md`). Under the rules 1, 2, 4, 5 and 6 the foliated complex is
 //! homeomorphic to `source region x [0, 1]` by `p -> (start of its leaf, length behind p / length of the leaf)`.
 
-use crate::complex::{Complex, TETRAHEDRON_EDGES, edge_place, edge_vertices};
+use crate::complex::{Complex, is_same_face, place};
 use crate::links::{Shape, check_manifold, shape};
 use crate::manifest::Target;
 use crate::map_file::FoliationData;
@@ -42,8 +42,8 @@ pub(crate) fn check_foliation(
     foliation.check_acyclic()?;
     let on_source = foliation.vertices_of(&foliation.source);
     let on_sink = foliation.vertices_of(&foliation.sink);
-    let edges = foliation.check_edges()?;
-    foliation.check_vertices(&on_source, &on_sink)?;
+    let [vertices, edges] = complex.small_faces();
+    let bipolar = foliation.check_bipolar(edges)? + foliation.check_bipolar(vertices)?;
     foliation.check_regions_apart(&on_source, &on_sink)?;
     let region = foliation.check_region_shapes(target)?;
     check_section(&foliation, &region, data, target)?;
@@ -53,7 +53,7 @@ pub(crate) fn check_foliation(
         ("source facets", foliation.source.len() as u64),
         ("sink facets", foliation.sink.len() as u64),
         ("parallel facets", foliation.parallel.len() as u64),
-        ("edges that are locally bipolar (rule 5)", edges),
+        ("vertices and edges that are locally bipolar (rule 5)", bipolar),
         ("vertices of the section (rule 7)", data.section_vertices.len() as u64),
     ])
 }
@@ -185,68 +185,33 @@ impl Foliation<'_> {
         on
     }
 
-    /// Whether a cell has no facet of the given sign that contains all its vertices in `face`.
-    fn has_none_around(&self, c: usize, face: &[usize], sign: i8) -> bool {
-        self.row(c).iter().enumerate().all(|(i, d)| face.contains(&i) || d.signum() != sign)
-    }
-
-    /// Rule 5 at vertices: one cell, or the source region, comes first around it, and likewise last.
-    fn check_vertices(&self, on_source: &[bool], on_sink: &[bool]) -> Checked {
-        for (sign, on_region, what) in [(1, on_source, "begin"), (-1, on_sink, "end")] {
-            let mut count: Vec<u32> = on_region.iter().map(|&on| u32::from(on)).collect();
-            for c in self.foliated_cells() {
-                for (i, &v) in self.complex.cell(c).iter().enumerate() {
-                    count[v as usize] += u32::from(self.has_none_around(c, &[i], sign));
-                }
-            }
-            for c in self.foliated_cells() {
-                if let Some(&v) = self.complex.cell(c).iter().find(|&&v| count[v as usize] != 1) {
-                    let message = format!("around vertex {v} leaves {what} in {} places", count[v as usize]);
-                    return refuted("5", message, &[c], &[v]);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Rule 5 at the edges of tetrahedra.
-    fn check_edges(&self) -> Checked<u64> {
-        let edges = self.complex.sorted_edges();
-        let mut groups = 0;
-        let regions = [(1, self.edges_on(&self.source), "begin"), (-1, self.edges_on(&self.sink), "end")];
-        for group in edges.chunk_by(|a, b| a >> 32 == b >> 32) {
-            let places = group.iter().map(|&key| edge_place(key)).filter(|&(c, _)| Some(c) != self.centre);
-            if places.clone().next().is_none() {
-                continue; // an edge of the centre only
-            }
-            groups += 1;
-            for (sign, on_region, what) in &regions {
-                let on = places.clone().any(|(c, e)| on_region[c] >> e & 1 == 1);
-                let first = |&(c, e): &(usize, usize)| self.has_none_around(c, &TETRAHEDRON_EDGES[e], *sign);
-                let count = usize::from(on) + places.clone().filter(first).count();
-                if count != 1 {
-                    let cells: Vec<usize> = places.map(|(c, _)| c).collect();
-                    let ends = edge_vertices(group[0]);
-                    return refuted(
-                        "5",
-                        format!("around edge {ends:?} leaves {what} in {count} places"),
-                        &cells,
-                        &ends,
-                    );
+    /// Rule 5: around each vertex, and each edge of a tetrahedron, one cell or the source region comes first, and
+    /// one cell or the sink region last. Returns the number of faces.
+    fn check_bipolar(&self, kind: &[u8]) -> Checked<u64> {
+        let (size, mut count) = (self.complex.size, 0);
+        for group in self.complex.sorted_faces(kind).chunk_by(is_same_face) {
+            let around: Vec<(usize, u8)> = group
+                .iter()
+                .map(|&key| (place(key) / kind.len(), kind[place(key) % kind.len()]))
+                .filter(|&(c, _)| Some(c) != self.centre)
+                .collect();
+            count += u64::from(!around.is_empty());
+            for (sign, what) in [(1, "begin"), (-1, "end")].iter().take_while(|_| !around.is_empty()) {
+                // The facets of a cell that contain the face are those opposite its vertices that are not in the face.
+                let slots =
+                    |&(c, mask): &(usize, u8)| (0..size).filter(move |i| mask >> i & 1 == 0).map(move |i| size * c + i);
+                let with_sign = |&slot: &usize| self.sign(slot) == *sign;
+                let on_region = around.iter().flat_map(slots).filter(with_sign).any(|slot| self.across(slot).is_none());
+                let first = around.iter().filter(|&cell| !slots(cell).any(|slot| with_sign(&slot))).count();
+                if first + usize::from(on_region) != 1 {
+                    let cells: Vec<usize> = around.iter().map(|&(c, _)| c).collect();
+                    let (face, length) = self.complex.face(around[0].0, around[0].1);
+                    let message = format!("leaves {what} in {} places around a face", first + usize::from(on_region));
+                    return refuted("5", message, &cells, &face[..length]);
                 }
             }
         }
-        Ok(groups)
-    }
-
-    /// For each tetrahedron, which of its edges lie on these facets of it, as bits.
-    fn edges_on(&self, slots: &[usize]) -> Vec<u8> {
-        let mut bits = vec![0; self.complex.count()];
-        for &slot in slots.iter().filter(|_| self.complex.size == 4) {
-            let on_facet = TETRAHEDRON_EDGES.iter().enumerate().filter(|(_, edge)| !edge.contains(&(slot % 4)));
-            on_facet.for_each(|(e, _)| bits[slot / 4] |= 1 << e);
-        }
-        bits
+        Ok(count)
     }
 
     /// Rule 6: no vertex on both regions, and neither region is empty.

@@ -5,7 +5,7 @@
 //! and Euler number 0. The link of a vertex of a 3-complex is a surface when every facet has at most two cells
 //! and the cells around every edge are connected through facets; so these checks need no search.
 
-use crate::complex::{Complex, TETRAHEDRON_EDGES, UnionFind, edge_place, edge_vertices};
+use crate::complex::{Complex, EDGES, UnionFind, is_same_face, place};
 use crate::verdict::{Checked, refuted};
 
 /// What tells apart the manifolds that occur here.
@@ -21,74 +21,47 @@ pub(crate) struct Shape {
 
 /// Checks that every vertex link is a sphere or a ball, and returns the topological numbers.
 pub(crate) fn check_manifold(complex: &Complex, rule: &'static str, what: &str) -> Checked<Shape> {
-    let edges = complex.sorted_edges();
-    check_edge_links(complex, &edges, rule, what)?;
-    check_vertex_stars(complex, rule, what)?;
+    let [vertices, edges] = complex.small_faces();
+    let edges = check_stars(complex, edges, rule, what)?;
+    check_stars(complex, vertices, rule, what)?;
     if complex.size == 4 {
         check_vertex_links(complex, &edges, rule, what)?;
     }
-    shape(complex, edges.chunk_by(same_edge).count(), rule)
+    shape(complex, edges.chunk_by(is_same_face).count(), rule)
 }
 
-fn same_edge(a: &u128, b: &u128) -> bool {
-    a >> 32 == b >> 32
-}
-
-/// The cells around each edge are one path or cycle: those that facets connect are all of them.
-fn check_edge_links(complex: &Complex, edges: &[u128], rule: &'static str, what: &str) -> Checked {
-    let mut classes = UnionFind::new(edges.len());
-    for (a, b) in complex.inner_facets().take_while(|_| !edges.is_empty()) {
-        for (e, [i, j]) in TETRAHEDRON_EDGES.iter().enumerate() {
-            if *i == a % 4 || *j == a % 4 {
-                continue; // not an edge of this facet
-            }
-            let ends = [complex.cell(a / 4)[*i], complex.cell(a / 4)[*j]];
-            let other = complex.cell(b / 4);
-            let found = TETRAHEDRON_EDGES.iter().position(|f| f.iter().all(|&k| ends.contains(&other[k])));
-            found.into_iter().for_each(|f| classes.join(a / 4 * 6 + e, b / 4 * 6 + f));
-        }
-    }
-    for group in edges.chunk_by(same_edge) {
-        let mut roots = group.iter().map(|&key| edge_place(key)).map(|(c, e)| (c, classes.find(6 * c + e)));
-        let Some((cell, first)) = roots.next() else { continue };
-        if let Some((other, _)) = roots.find(|&(_, root)| root != first) {
-            let message = format!("{what}: the cells around an edge are not connected through facets");
-            return refuted(rule, message, &[cell, other], &edge_vertices(group[0]));
-        }
-    }
-    Ok(())
-}
-
-/// The cells around each vertex are connected through facets that contain it.
-fn check_vertex_stars(complex: &Complex, rule: &'static str, what: &str) -> Checked {
-    let size = complex.size;
-    let mut classes = UnionFind::new(size * complex.count());
+/// The cells around each face of a kind are connected through facets that contain it. Returns the sorted faces.
+fn check_stars(complex: &Complex, kind: &[u8], rule: &'static str, what: &str) -> Checked<Vec<u128>> {
+    let (size, faces) = (complex.size, complex.sorted_faces(kind));
+    let mut classes = UnionFind::new(faces.len());
     for (a, b) in complex.inner_facets() {
-        let (first, second) = (a / size, b / size);
-        for (i, v) in complex.cell(first).iter().enumerate().filter(|(i, _)| *i != a % size) {
-            let found = complex.cell(second).iter().position(|w| w == v);
-            found.into_iter().for_each(|j| classes.join(size * first + i, size * second + j));
+        let (c, d) = (a / size, b / size);
+        for (k, &mask) in kind.iter().enumerate().filter(|(_, mask)| *mask >> (a % size) & 1 == 0) {
+            let face = complex.face(c, mask);
+            let found = kind.iter().position(|&other| complex.face(d, other) == face);
+            found.into_iter().for_each(|l| classes.join(kind.len() * c + k, kind.len() * d + l));
         }
     }
-    let mut first_class = vec![None; complex.vertex_count];
-    for c in 0..complex.count() {
-        for (i, &v) in complex.cell(c).iter().enumerate() {
-            let class = classes.find(size * c + i);
-            let first = *first_class[v as usize].get_or_insert(class as u32) as usize;
-            if first != class {
-                let message = format!("{what}: the cells around a vertex are not connected through facets");
-                return refuted(rule, message, &[first / size, c], &[v]);
-            }
+    for group in faces.chunk_by(is_same_face) {
+        let first = place(group[0]);
+        if let Some(&key) = group.iter().find(|&&key| classes.find(place(key)) != classes.find(first)) {
+            let (face, length) = complex.face(first / kind.len(), kind[first % kind.len()]);
+            let message =
+                format!("{what}: the cells around a face of {length} vertices are not connected through facets");
+            return refuted(rule, message, &[first / kind.len(), place(key) / kind.len()], &face[..length]);
         }
     }
-    Ok(())
+    Ok(faces)
 }
 
 /// Each vertex link, a connected surface by the checks before, is a sphere (inside) or a disk (on the boundary).
 fn check_vertex_links(complex: &Complex, edges: &[u128], rule: &'static str, what: &str) -> Checked {
     let mut euler = vec![0i64; complex.vertex_count];
     let mut expected = vec![2i64; complex.vertex_count];
-    edges.chunk_by(same_edge).flat_map(|group| edge_vertices(group[0])).for_each(|v| euler[v as usize] += 1);
+    for group in edges.chunk_by(is_same_face) {
+        let edge = place(group[0]);
+        complex.face(edge / 6, EDGES[edge % 6]).0[..2].iter().for_each(|&v| euler[v as usize] += 1);
+    }
     let add_facet = |euler: &mut Vec<i64>, slot| complex.facet(slot).0.iter().for_each(|&v| euler[v as usize] -= 1);
     complex.inner_facets().for_each(|(slot, _)| add_facet(&mut euler, slot));
     for slot in complex.boundary_slots() {
@@ -128,4 +101,35 @@ pub(crate) fn shape(complex: &Complex, edge_count: usize, rule: &'static str) ->
         _ => shape(&complex.facet_complex(complex.boundary_slots(), rule)?, 0, rule)?.components,
     };
     Ok(Shape { components, euler, boundaries })
+}
+
+/// Given rules 1 to 6 the theorem implies the topology of the regions, so no map file can break that sentence of
+/// rule 8 alone: its negative controls are here.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::complex::Rules;
+
+    fn numbers(size: usize, cells: &[u32]) -> Option<(usize, i64, usize)> {
+        let complex = Complex::new(size, cells.to_vec(), 12, Rules { cells: "8", facets: "8" }).ok()?;
+        let shape = check_manifold(&complex, "8", "test").ok()?;
+        Some((shape.components, shape.euler, shape.boundaries))
+    }
+
+    #[test]
+    fn regions_of_another_topology_are_told_apart() {
+        assert_eq!(numbers(3, &[0, 1, 2]), Some((1, 1, 1)), "disk");
+        assert_eq!(numbers(3, &[0, 1, 2, 0, 1, 3, 0, 2, 3, 1, 2, 3]), Some((1, 2, 0)), "sphere");
+        let annulus = [0, 3, 1, 1, 3, 4, 1, 4, 2, 2, 4, 5, 2, 5, 0, 0, 5, 3];
+        assert_eq!(numbers(3, &annulus), Some((1, 0, 2)), "annulus");
+        let moebius = [0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4, 0, 4, 0, 1];
+        assert_eq!(numbers(3, &moebius), Some((1, 0, 1)), "moebius strip");
+        assert_eq!(numbers(3, &[0, 1, 2, 3, 4, 5]), Some((2, 2, 2)), "two disks");
+        assert_eq!(numbers(3, &[0, 1, 2, 0, 3, 4]), None, "two triangles at a vertex");
+        assert_eq!(numbers(2, &[0, 1, 1, 2]), Some((1, 1, 2)), "arc");
+        assert_eq!(numbers(2, &[0, 1, 1, 2, 2, 0]), Some((1, 0, 0)), "circle");
+        assert_eq!(numbers(2, &[0, 1, 2, 3]), Some((2, 2, 4)), "two arcs");
+        assert_eq!(numbers(2, &[0, 1, 0, 2, 0, 3]), None, "three edges at a vertex");
+        assert_eq!(numbers(3, &[]), Some((0, 0, 0)), "nothing");
+    }
 }

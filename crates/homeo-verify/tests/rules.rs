@@ -106,14 +106,14 @@ fn rule_8_links_and_topology_of_the_source() {
     assert_refuted(&annulus, "8", "not a ball");
 
     let plane = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.], [1., 1., 5.]];
-    assert_refuted(&source("square", &plane, &[&[0, 1, 2], &[0, 3, 4]]), "8", "around a vertex");
+    assert_refuted(&source("square", &plane, &[&[0, 1, 2], &[0, 3, 4]]), "8", "around a face of 1");
     assert_refuted(&source("square", &plane, &[&[0, 1, 2], &[0, 1, 4], &[0, 1, 5]]), "8", "share a facet");
     let apart = source("square", &plane, &[&[0, 1, 2], &[3, 4, 5]]);
     assert_refuted(&apart, "8", "not a ball");
 
     let space = [[0., 0., 0.], [0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
     let at_an_edge = source("cube", &space, &[&[0, 1, 2, 3], &[0, 1, 4, 5]]);
-    assert_eq!(assert_refuted(&at_an_edge, "8", "around an edge").vertices, [0, 1]);
+    assert_eq!(assert_refuted(&at_an_edge, "8", "around a face of 2").vertices, [0, 1]);
 }
 
 /// A cone over an annulus of triangles: connected through facets everywhere, but the apex has no disk around it.
@@ -270,7 +270,7 @@ fn rule_5_vertices() {
     // Leaves come in through the rim in cells 0 and 3, which are both first around the middle.
     let (first, between, last) = (vec![2, -1, -1], vec![-1, -1, 2], vec![-2, 1, 1]);
     map.directions = [&first, &between, &last, &first, &between, &last].map(Vec::clone).to_vec();
-    let witness = assert_refuted(&map, "5", "around vertex");
+    let witness = assert_refuted(&map, "5", "places around");
     assert_eq!(witness.vertices.len(), 1);
 }
 
