@@ -1,6 +1,7 @@
 //! Feeds damaged mesh files to the readers, without any fuzzing tool.
 //!
 //! Usage: `cargo run --release -p homeo-core --example stress_readers -- SECONDS [FORMAT] [SEED_FILE…]`
+//! The environment variable `STRESS_SEED` (a number) starts another sequence of damage.
 //!
 //! For each format (or the one named by its extension) valid files are damaged at random for the
 //! given number of seconds. Reported: reads, how many succeeded, panics, the slowest read, and the
@@ -44,7 +45,8 @@ impl Random {
 }
 
 fn stress(format: Format, seeds: &[Vec<u8>], duration: Duration) {
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let seed = std::env::var("STRESS_SEED").ok().and_then(|text| text.parse::<u64>().ok()).unwrap_or_default();
+    let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ seed.wrapping_mul(0x2545_f491_4f6c_dd1d));
     let start = Instant::now();
     let (mut reads, mut successes, mut panics) = (0_u64, 0_u64, 0_u64);
     let mut slowest = (Duration::ZERO, 0);

@@ -196,6 +196,34 @@ impl<const K: usize> RefinedMesh<K> {
         Ok(mesh)
     }
 
+    /// The same subdivision of a source that differs in the order of cells and vertices alone: `vertices` and
+    /// `cells` give the numbers in `source` of those of the present one. Also returns the present numbers of all
+    /// cells in their new order.
+    pub(crate) fn renumbered(
+        &self,
+        source: &SourceMesh<K>,
+        vertices: &[VertexId],
+        cells: &[CellId],
+    ) -> (Self, Vec<CellId>) {
+        let vertex = |v: VertexId| vertices.get(v.index()).copied().unwrap_or(v);
+        let mut order: Vec<CellId> = self.complex.cell_ids().collect();
+        // Children of one cell follow one another already, and stay in their order.
+        order.sort_by_key(|cell| cells[self.parents[cell.index()].index()]);
+        let corners = order.iter().map(|&cell| self.complex.cell(cell).map(vertex)).collect();
+        let mut positions = source.positions().to_vec();
+        positions.extend_from_slice(&self.positions[self.source_vertex_count..]);
+        let carried =
+            |carrier: &Carrier<K>| Carrier { vertices: carrier.vertices.map(vertex), weights: carrier.weights };
+        let mesh = Self {
+            complex: SimplicialComplex::new(positions.len(), corners).expect("as many vertices as before"),
+            positions,
+            source_vertex_count: self.source_vertex_count,
+            added: self.added.iter().map(carried).collect(),
+            parents: order.iter().map(|cell| cells[self.parents[cell.index()].index()]).collect(),
+        };
+        (mesh, order)
+    }
+
     /// The cells.
     pub fn complex(&self) -> &SimplicialComplex<K> {
         &self.complex

@@ -103,6 +103,17 @@ impl<const K: usize> Adjacency<K> {
         &self.across
     }
 
+    /// The same gluing with cells in another order: `order` lists the present numbers of all cells.
+    #[must_use]
+    pub fn reordered(&self, order: &[CellId]) -> Self {
+        let mut place = vec![CellId::new(0); order.len()];
+        order.iter().enumerate().for_each(|(new, old)| place[old.index()] = CellId::new(new));
+        let moved = |facet: Facet| {
+            if facet.is_none() { facet } else { Facet::new(place[facet.cell().index()], facet.opposite()) }
+        };
+        Self { across: order.iter().map(|old| self.across[old.index()].map(moved)).collect() }
+    }
+
     /// Facets with nothing on the other side, by ascending cell.
     pub fn boundary_facets(&self) -> impl Iterator<Item = Facet> + '_ {
         self.across

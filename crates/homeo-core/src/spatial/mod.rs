@@ -4,7 +4,9 @@
 //! leaves out is certainly apart, and what it visits is a candidate for an exact test.
 
 mod aabb;
+mod curve;
 mod tree;
 
 pub use aabb::Aabb;
+pub use curve::{cells_along_curve, curve_order};
 pub use tree::Tree;

@@ -5,7 +5,7 @@
 //! a band of leaves stand are fetched together, then each leaf crosses its own. Answers are those of
 //! one leaf after the other, to the last bit.
 
-use homeo_core::mesh::Facet;
+use homeo_core::mesh::{CellId, Facet};
 use rayon::prelude::*;
 
 use super::exact::Sense;
@@ -32,7 +32,8 @@ impl<const K: usize> Foliation<K> {
         let located: Vec<_> = points.iter().map(locate).collect();
         // Two for each point: the first goes back, the second ahead.
         let starts = located.iter().flatten().filter_map(|located| self.fast_start(located));
-        let mut leaves: Vec<FastLeaf<K>> = starts.flat_map(|at| [FastLeaf::new(at), FastLeaf::new(at)]).collect();
+        let mut leaves: Vec<FastLeaf<K>> =
+            starts.flat_map(|at| [FastLeaf::new(self, at), FastLeaf::new(self, at)]).collect();
         let ends = self.follow_all(&mut leaves);
         let mut images = leaves.chunks_exact(2).zip(ends.chunks_exact(2)).map(|(leaves, ends)| {
             let [start, end] = [ends[0]?, ends[1]?];
@@ -52,17 +53,17 @@ impl<const K: usize> Foliation<K> {
         let mut ends = vec![Err(Undecided); leaves.len()];
         let mut band: Vec<usize> = (0..leaves.len().min(BAND)).collect();
         let mut next = band.len();
-        let mut steps = [self.steps[0]; BAND];
+        let mut steps = [*self.steps.at(CellId::new(0)); BAND];
         while !band.is_empty() {
             for (step, &number) in steps.iter_mut().zip(&band) {
-                *step = self.steps[leaves[number].cell.index()];
+                *step = *self.steps.at(leaves[number].slot);
             }
             for place in (0..band.len()).rev() {
                 let number = band[place];
                 let sense = if number.is_multiple_of(2) { Sense::Backward } else { Sense::Forward };
                 ends[number] = match leaves[number].advance(&steps[place], sense) {
                     Ok(None) => continue,
-                    Ok(Some(end)) => Ok(end),
+                    Ok(Some(end)) => Ok(self.steps.facet(end)),
                     Err(undecided) => Err(undecided),
                 };
                 if next < leaves.len() {

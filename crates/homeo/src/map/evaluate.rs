@@ -52,7 +52,7 @@ impl<const K: usize> Foliation<K> {
 
     /// Weights in the centre cell of a point on a facet that the centre shares.
     fn inside_centre(&self, facet: Facet, weights: &[IBig; K]) -> [IBig; K] {
-        let step = &self.steps[facet.cell().index()];
+        let step = self.steps.of(facet.cell());
         let mut inside: [IBig; K] = std::array::from_fn(|_| IBig::ZERO);
         for k in (0..K).filter(|&k| k != facet.opposite()) {
             inside[step.renumbered(facet.opposite(), k)] = weights[k].clone();
@@ -64,7 +64,7 @@ impl<const K: usize> Foliation<K> {
     fn out_of_centre(&self, centre: CellId, weights: &[IBig; K]) -> ExactLocation<K> {
         let i = (0..K).find(|&i| weights[i] == IBig::ZERO).expect("on the boundary a weight is 0 (please report this)");
         let far = self.adjacency().across(centre, i);
-        let step = &self.steps[centre.index()];
+        let step = self.steps.of(centre);
         let mut outside: [IBig; K] = std::array::from_fn(|_| IBig::ZERO);
         for k in (0..K).filter(|&k| k != i) {
             outside[step.renumbered(i, k)] = weights[k].clone();

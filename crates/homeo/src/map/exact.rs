@@ -60,7 +60,7 @@ impl<const K: usize> ExactLeaf<K> {
 
     /// The facet through which the leaf leaves the current cell.
     pub fn exit(&self, map: &Foliation<K>, sense: Sense) -> usize {
-        let direction = &map.steps[self.at.cell.index()].direction;
+        let direction = &map.steps.of(self.at.cell).direction;
         let sign = sense.exit_sign();
         let mut best: Option<usize> = None;
         for i in (0..K).filter(|&i| direction[i].signum() == sign) {
@@ -77,7 +77,7 @@ impl<const K: usize> ExactLeaf<K> {
 
     /// Moves to facet `i` of the current cell.
     pub fn move_to(&mut self, map: &Foliation<K>, i: usize) {
-        let step = &map.steps[self.at.cell.index()];
+        let step = map.steps.of(self.at.cell);
         if self.at.weights[i] == IBig::ZERO {
             return;
         }
@@ -98,7 +98,7 @@ impl<const K: usize> ExactLeaf<K> {
         if self.steps.is_multiple_of(REDUCE_EVERY) {
             self.reduce();
         }
-        let step = &map.steps[self.at.cell.index()];
+        let step = map.steps.of(self.at.cell);
         let far = step.across[i];
         if far.is_none() {
             return Some(Facet::new(self.at.cell, i));
@@ -107,7 +107,7 @@ impl<const K: usize> ExactLeaf<K> {
         for k in (0..K).filter(|&k| k != i) {
             weights[step.renumbered(i, k)] = std::mem::take(&mut self.at.weights[k]);
         }
-        self.at = ExactLocation { cell: far.cell(), weights };
+        self.at = ExactLocation { cell: map.steps.cell(far.cell()), weights };
         None
     }
 
@@ -141,7 +141,7 @@ impl<const K: usize> ExactLeaf<K> {
 
     /// Moves inside the current cell until `wanted` has been travelled in all.
     fn go_inside(&mut self, map: &Foliation<K>, wanted: &Rational) {
-        let step = &map.steps[self.at.cell.index()];
+        let step = map.steps.of(self.at.cell);
         let left = wanted - &self.travelled();
         // Weights b / W move to b / W + (left / h) d.
         let (p, q) = (&left / &Rational::from(i64::from(step.length))).into_parts();

@@ -11,25 +11,47 @@ use homeo_core::mesh::{CellId, Facet};
 
 use super::Foliation;
 use super::exact::Sense;
-use super::foliation::Step;
 use super::locate::FloatLocation;
+use super::steps::Step;
 
 /// Rounding cannot tell through which facet the leaf goes on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Undecided;
 
-/// Bound of the rounding of one step, in barycentric coordinates (all are at most 1): a quotient, a
-/// product and a difference for each weight, and the sum that normalizes them, half an ulp each.
+/// Bound of the rounding of one step, in barycentric coordinates (all are at most 1): half an ulp each for a quotient, a
+/// product and a difference of two weights, and for the third all of theirs and the four of its own sum.
 const STEP_ROUNDING: f64 = 5.0 * f64::EPSILON;
 /// The box of errors is turned when the columns of the derivative are this close to parallel.
 const NEARLY_PARALLEL: f64 = 0.05;
+/// For leaves ahead and leaves back: the reciprocal of each offset that leads out of a cell, as a positive number, by
+/// its bits; 0 for the others.
+static RECIPROCALS: [[f64; 256]; 2] = {
+    let mut table = [[0.0; 256]; 2];
+    let mut offset = 1;
+    while offset <= 128 {
+        // Ahead, weights on the way out have negative offsets.
+        table[0][256 - offset] = 1.0 / offset as f64;
+        if offset < 128 {
+            table[1][offset] = 1.0 / offset as f64;
+        }
+        offset += 1;
+    }
+    table
+};
 /// Errors beyond this mean that nothing is known any more.
 const LARGEST_ERROR: f64 = 0.125;
+
+/// Two vertices of a cell besides `i`.
+#[inline(always)]
+const fn two_others(i: usize) -> (usize, usize) {
+    (if i == 0 { 1 } else { 0 }, if i <= 1 { 2 } else { 1 })
+}
 
 /// A leaf being followed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FastLeaf<const K: usize> {
-    pub cell: CellId,
+    /// Where the leaf is, as a slot of the table of steps.
+    pub slot: CellId,
     /// Barycentric coordinates.
     pub weights: [f64; K],
     /// Bit per weight that is exactly 0.
@@ -48,10 +70,10 @@ pub(super) struct FastLeaf<const K: usize> {
 }
 
 impl<const K: usize> FastLeaf<K> {
-    pub fn new(at: &FloatLocation<K>) -> Self {
+    pub fn new(map: &Foliation<K>, at: &FloatLocation<K>) -> Self {
         let zeros = (0..K).filter(|&i| at.errors[i] == 0.0 && at.weights[i] == 0.0).fold(0, |bits, i| bits | 1 << i);
         Self {
-            cell: at.cell,
+            slot: map.steps.slot(at.cell),
             weights: at.weights,
             zeros,
             derivative: [[0.0; 2]; K],
@@ -62,6 +84,11 @@ impl<const K: usize> FastLeaf<K> {
             length_error: 0.0,
             steps: 0,
         }
+    }
+
+    /// The cell where the leaf is.
+    pub fn cell(&self, map: &Foliation<K>) -> CellId {
+        map.steps.cell(self.slot)
     }
 
     /// Bound of the error of weight `i`.
@@ -84,6 +111,26 @@ impl<const K: usize> FastLeaf<K> {
     /// The facet through which the leaf leaves the current cell.
     #[inline(always)]
     pub fn exit(&self, step: &Step, sense: Sense) -> Result<usize, Undecided> {
+        // Which offsets lead out is as good as random: no branch depends on it.
+        let reciprocals = &RECIPROCALS[usize::from(sense == Sense::Backward)];
+        let (mut arrival, mut slack) = ([f64::INFINITY; K], [0.0; K]);
+        let mut best = 0;
+        for j in 0..K {
+            let reciprocal = reciprocals[usize::from(step.direction[j].cast_unsigned())];
+            let leads_out = reciprocal > 0.0;
+            // Three roundings, of the reciprocal, the product and, below, the sum; and those of this very bound.
+            slack[j] = reciprocal * (1.0000001 * self.errors[j] + 3.0 * f64::EPSILON * self.weights[j].abs());
+            arrival[j] = if leads_out { self.weights[j] * reciprocal } else { f64::INFINITY };
+            best = if arrival[j] < arrival[best] { j } else { best };
+        }
+        let latest = arrival[best] + slack[best];
+        let rivals: usize = (0..K).map(|j| usize::from(arrival[j] - slack[j] <= latest)).sum();
+        if rivals == 1 { Ok(best) } else { self.exit_among_rivals(step, sense) }
+    }
+
+    /// The same where several facets are reached at about the same time, as on edges and vertices.
+    #[cold]
+    fn exit_among_rivals(&self, step: &Step, sense: Sense) -> Result<usize, Undecided> {
         let direction = &step.direction;
         let sign = sense.exit_sign();
         let mut best = K;
@@ -128,9 +175,10 @@ impl<const K: usize> FastLeaf<K> {
         let error = self.error(i);
         // Weights move to b_j - (b_i / d_i) d_j, backwards and forwards alike.
         let along = self.weights[i] / offset;
+        let reciprocal = 1.0 / offset;
         let h = f64::from(step.length);
         self.length += h * along.abs();
-        self.length_error += h * error / offset.abs() + 4.0 * f64::EPSILON * self.length;
+        self.length_error += h * error * reciprocal.abs() + 4.0 * f64::EPSILON * self.length;
         let column = self.derivative[i];
         let mut stays_zero = 0;
         for j in 0..K {
@@ -140,7 +188,7 @@ impl<const K: usize> FastLeaf<K> {
                 continue;
             }
             self.weights[j] -= along * direction;
-            let ratio = direction / offset;
+            let ratio = direction * reciprocal;
             if self.is_starting {
                 self.errors[j] += ratio.abs() * error + STEP_ROUNDING;
             } else {
@@ -151,21 +199,23 @@ impl<const K: usize> FastLeaf<K> {
         self.weights[i] = 0.0;
         self.derivative[i] = [0.0; 2];
         self.zeros = stays_zero | 1 << i;
-        self.normalize();
+        self.normalize(i);
         if self.is_starting { self.settle(i) } else { self.add_rounding(i) }
     }
 
-    /// Makes the weights add up to 1 again by the largest of them.
+    /// Makes the weights add up to 1 again: rounding must not build up.
     #[inline(always)]
-    fn normalize(&mut self) {
-        let mut largest = 0;
-        let mut sum = 0.0;
-        for j in 0..K {
-            sum += self.weights[j];
-            if self.weights[j] > self.weights[largest] {
-                largest = j;
-            }
+    fn normalize(&mut self, i: usize) {
+        let (p, q) = two_others(i);
+        if self.zeros == 1 << i {
+            // The third weight takes what the others leave.
+            self.weights[if K == 4 { 6 - i - p - q } else { q }] =
+                if K == 4 { 1.0 - (self.weights[p] + self.weights[q]) } else { 1.0 - self.weights[p] };
+            return;
         }
+        // Weights that are exactly 0 stay so.
+        let sum: f64 = self.weights.iter().sum();
+        let largest = (0..K).fold(0, |best, j| if self.weights[j] > self.weights[best] { j } else { best });
         self.weights[largest] += 1.0 - sum;
     }
 
@@ -203,8 +253,7 @@ impl<const K: usize> FastLeaf<K> {
     #[inline(always)]
     fn add_rounding(&mut self, i: usize) -> Result<(), Undecided> {
         // The rows of the derivative add up to zero: any two of them will do.
-        let p = if i == 0 { 1 } else { 0 };
-        let q = if i <= 1 { 2 } else { 1 };
+        let (p, q) = two_others(i);
         let (u, v) = (self.derivative[p], self.derivative[q]);
         if K == 3 {
             let steepness = u[0].abs();
@@ -257,33 +306,26 @@ impl<const K: usize> FastLeaf<K> {
         self.derivative[r] = [-(along[0] + along[1]), -(across[0] + across[1])];
     }
 
-    /// Crosses facet `i`; gives the facet when the leaf ends there.
+    /// Crosses facet `i`; gives the facet, of the slot, when the leaf ends there.
     #[inline(always)]
     pub fn cross(&mut self, step: &Step, i: usize) -> Option<Facet> {
         self.steps += 1;
         let far = step.across[i];
         if far.is_none() {
-            return Some(Facet::new(self.cell, i));
+            return Some(Facet::new(self.slot, i));
         }
-        let (weights, derivative, errors, zeros) = (self.weights, self.derivative, self.errors, self.zeros);
-        self.weights = [0.0; K];
-        self.derivative = [[0.0; 2]; K];
-        self.errors = [0.0; K];
-        self.zeros = 1 << far.opposite();
-        // Zero but after a step of no length, where it keeps the rows' sum at zero.
-        self.derivative[far.opposite()] = derivative[i];
-        for k in (0..K).filter(|&k| k != i) {
-            let there = step.renumbered(i, k);
-            self.weights[there] = weights[k];
-            self.derivative[there] = derivative[k];
-            self.errors[there] = errors[k];
-            self.zeros |= (zeros >> k & 1) << there;
-        }
-        self.cell = far.cell();
+        debug_assert!(self.weights[i] == 0.0 && self.errors[i] == 0.0 && self.zeros >> i & 1 == 1);
+        self.weights = step.carried(i, &self.weights);
+        self.errors = step.carried(i, &self.errors);
+        // The row of `i` is zero but after a step of no length, where it keeps the rows' sum at zero.
+        self.derivative = step.carried(i, &self.derivative);
+        let zeros: [u8; K] = std::array::from_fn(|k| self.zeros >> k & 1);
+        self.zeros = step.carried(i, &zeros).iter().rev().fold(0, |bits, bit| bits << 1 | bit);
+        self.slot = far.cell();
         None
     }
 
-    /// Goes on to the next cell; gives the facet when the leaf ends.
+    /// Goes on to the next cell; gives the facet, of the slot, when the leaf ends.
     #[inline(always)]
     pub fn advance(&mut self, step: &Step, sense: Sense) -> Result<Option<Facet>, Undecided> {
         let i = self.exit(step, sense)?;
@@ -294,8 +336,8 @@ impl<const K: usize> FastLeaf<K> {
     /// Follows the leaf to its end; gives the facet there.
     pub fn follow(&mut self, map: &Foliation<K>, sense: Sense) -> Result<Facet, Undecided> {
         loop {
-            if let Some(end) = self.advance(&map.steps[self.cell.index()], sense)? {
-                return Ok(end);
+            if let Some(end) = self.advance(map.steps.at(self.slot), sense)? {
+                return Ok(map.steps.facet(end));
             }
         }
     }
@@ -304,13 +346,13 @@ impl<const K: usize> FastLeaf<K> {
     /// Gives the facets at the ends.
     pub fn follow_both(map: &Foliation<K>, back: &mut Self, ahead: &mut Self) -> Result<[Facet; 2], Undecided> {
         loop {
-            let start = back.advance(&map.steps[back.cell.index()], Sense::Backward)?;
-            let end = ahead.advance(&map.steps[ahead.cell.index()], Sense::Forward)?;
+            let start = back.advance(map.steps.at(back.slot), Sense::Backward)?;
+            let end = ahead.advance(map.steps.at(ahead.slot), Sense::Forward)?;
             match (start, end) {
                 (None, None) => {}
-                (Some(start), Some(end)) => return Ok([start, end]),
-                (Some(start), None) => return Ok([start, ahead.follow(map, Sense::Forward)?]),
-                (None, Some(end)) => return Ok([back.follow(map, Sense::Backward)?, end]),
+                (Some(start), Some(end)) => return Ok([start, end].map(|facet| map.steps.facet(facet))),
+                (Some(start), None) => return Ok([map.steps.facet(start), ahead.follow(map, Sense::Forward)?]),
+                (None, Some(end)) => return Ok([back.follow(map, Sense::Backward)?, map.steps.facet(end)]),
             }
         }
     }
@@ -320,7 +362,7 @@ impl<const K: usize> FastLeaf<K> {
     /// Gives bounds of the errors of the weights.
     pub fn follow_for(&mut self, map: &Foliation<K>, wanted: f64, wanted_error: f64) -> Result<[f64; K], Undecided> {
         loop {
-            let step = &map.steps[self.cell.index()];
+            let step = map.steps.at(self.slot);
             let i = self.exit(step, Sense::Forward)?;
             if self.length_at(step, i) >= wanted {
                 return Ok(self.go_inside(map, wanted, wanted_error));
@@ -334,7 +376,7 @@ impl<const K: usize> FastLeaf<K> {
     }
 
     fn go_inside(&mut self, map: &Foliation<K>, wanted: f64, wanted_error: f64) -> [f64; K] {
-        let step = &map.steps[self.cell.index()];
+        let step = map.steps.at(self.slot);
         let h = f64::from(step.length);
         let along = (wanted - self.length).max(0.0) / h;
         let slack = (wanted_error + self.length_error + 4.0 * f64::EPSILON * wanted) / h;

@@ -77,7 +77,7 @@ impl<const K: usize> Foliation<K> {
     }
 
     pub(super) fn fast_image(&self, at: &FloatLocation<K>) -> Result<Enclosed, Undecided> {
-        let (mut back, mut ahead) = (FastLeaf::new(at), FastLeaf::new(at));
+        let (mut back, mut ahead) = (FastLeaf::new(self, at), FastLeaf::new(self, at));
         let [start, _] = FastLeaf::follow_both(self, &mut back, &mut ahead)?;
         self.image_of_ends(start, &back, &ahead)
     }
@@ -114,7 +114,7 @@ impl<const K: usize> Foliation<K> {
         let mut value = [0.0; 3];
         let mut error = 0.0;
         if let Section::Centre = self.parts().section {
-            let step = &self.steps[start.cell().index()];
+            let step = self.steps.of(start.cell());
             for k in others() {
                 let corner = BALL_CORNERS[step.renumbered(start.opposite(), k)];
                 (0..3).for_each(|axis| value[axis] += share(k) * f64::from(corner[axis]) / 2.0);
@@ -295,7 +295,7 @@ impl<const K: usize> Foliation<K> {
         let exact_r = super::evaluate::exact(r);
         let exact = boundary.map(|x| &x * &exact_r);
         let far = self.adjacency().across(centre.cell, least);
-        let step = &self.steps[centre.cell.index()];
+        let step = self.steps.of(centre.cell);
         let (mut outside, mut errors) = ([0.0; K], [0.0; K]);
         for k in (0..K).filter(|&k| k != least) {
             outside[step.renumbered(least, k)] = weights[k] / sum;
@@ -306,7 +306,7 @@ impl<const K: usize> Foliation<K> {
     }
 
     fn fast_preimage(&self, at: &FloatLocation<K>, goal: Goal) -> Result<Enclosed, Undecided> {
-        let mut ahead = FastLeaf::new(at);
+        let mut ahead = FastLeaf::new(self, at);
         ahead.follow(self, Sense::Forward)?;
         let radius = f64::from(self.parts().centre.map_or(0, |c| c.length));
         let (length, error) = (ahead.length, ahead.length_error);
@@ -322,9 +322,9 @@ impl<const K: usize> Foliation<K> {
             }
         };
         let wanted = wanted.clamp(0.0, length);
-        let mut leaf = FastLeaf::new(at);
+        let mut leaf = FastLeaf::new(self, at);
         let errors = leaf.follow_for(self, wanted, error + ULPS * (length + radius))?;
-        Ok(self.position_float(leaf.cell, &leaf.weights, &errors))
+        Ok(self.position_float(leaf.cell(self), &leaf.weights, &errors))
     }
 
     fn position_float(&self, cell: CellId, weights: &[f64; K], errors: &[f64; K]) -> Enclosed {

@@ -1,9 +1,10 @@
 //! A foliation as data, and the tables that evaluation uses.
 
-use homeo_core::mesh::{Adjacency, CellId, Facet, VertexId};
+use homeo_core::mesh::{Adjacency, CellId};
 
 use super::locate::Locator;
 use super::section::SectionIndex;
+use super::steps::Steps;
 use super::{Section, Target};
 use crate::input::SourceMesh;
 use crate::refine::RefinedMesh;
@@ -46,38 +47,15 @@ pub struct Foliation<const K: usize> {
     adjacency: Adjacency<K>,
     parts: FoliationParts<K>,
     accuracy: f64,
-    pub(super) steps: Vec<Step>,
+    pub(super) steps: Steps,
     pub(super) locator: Locator<K>,
     pub(super) section_index: SectionIndex,
-}
-
-/// What a leaf needs to know of a cell, in half a cache line.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub(super) struct Step {
-    /// The cell across each facet; [`Facet::NONE`] where the leaf ends (boundary or centre).
-    pub across: [Facet; 4],
-    /// The direction.
-    pub direction: [i8; 4],
-    /// For each facet, the number in the next cell of each vertex, two bits each.
-    pub renumber: [u8; 4],
-    /// Length per unit of direction.
-    pub length: u32,
-}
-
-impl Step {
-    /// Number in the cell across facet `i` of local vertex `k`.
-    #[inline]
-    pub fn renumbered(&self, i: usize, k: usize) -> usize {
-        usize::from(self.renumber[i] >> (2 * k) & 3)
-    }
 }
 
 impl<const K: usize> Foliation<K> {
     /// Joins the data of a map. What they must satisfy is checked by the certificate, not here.
     pub fn from_parts(source: SourceMesh<K>, adjacency: Adjacency<K>, parts: FoliationParts<K>) -> Self {
-        let centre = parts.centre.map(|c| c.cell);
-        let steps = parts.mesh.complex().cell_ids().map(|cell| step(&parts, &adjacency, centre, cell)).collect();
+        let steps = Steps::new(&parts, &adjacency);
         let locator = Locator::new(&source, &parts.mesh);
         let section_index = SectionIndex::new(&parts, &adjacency);
         Self { source, adjacency, parts, accuracy: DEFAULT_ACCURACY, steps, locator, section_index }
@@ -119,36 +97,4 @@ impl<const K: usize> Foliation<K> {
     pub(super) fn is_centre(&self, cell: CellId) -> bool {
         self.parts.centre.is_some_and(|centre| centre.cell == cell)
     }
-}
-
-fn step<const K: usize>(
-    parts: &FoliationParts<K>,
-    adjacency: &Adjacency<K>,
-    centre: Option<CellId>,
-    cell: CellId,
-) -> Step {
-    let mut step =
-        Step { across: [Facet::NONE; 4], direction: [0; 4], renumber: [0; 4], length: parts.lengths[cell.index()] };
-    let here = parts.mesh.complex().cell(cell);
-    for i in 0..K {
-        step.direction[i] = parts.directions[cell.index()][i];
-        let far = adjacency.across(cell, i);
-        if far.is_none() {
-            continue;
-        }
-        let there = parts.mesh.complex().cell(far.cell());
-        step.renumber[i] = renumbering(here, i, there);
-        if centre != Some(far.cell()) {
-            step.across[i] = far;
-        }
-    }
-    step
-}
-
-/// Where the vertices of facet `i` are in the cell across, two bits each.
-pub(super) fn renumbering<const K: usize>(here: [VertexId; K], i: usize, there: [VertexId; K]) -> u8 {
-    (0..K).filter(|&k| k != i).fold(0, |bits, k| {
-        let number = (0..K).find(|&l| there[l] == here[k]).unwrap_or(0);
-        bits | (number as u8) << (2 * k)
-    })
 }

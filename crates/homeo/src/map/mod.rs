@@ -13,6 +13,7 @@ mod locate;
 mod nearest;
 mod sample;
 mod section;
+mod steps;
 mod target;
 
 pub use foliation::{Centre, DEFAULT_ACCURACY, Foliation, FoliationParts};

@@ -71,13 +71,13 @@ impl<const K: usize> Foliation<K> {
     /// Points of a leaf where it crosses facets, and the last of them.
     #[allow(clippy::type_complexity)]
     fn polyline(&self, at: &FloatLocation<K>, sense: Sense) -> Result<(Vec<[f64; 3]>, [f64; 3]), Undecided> {
-        let mut leaf = FastLeaf::new(at);
-        let mut points = vec![self.point(leaf.cell, &leaf.weights)];
+        let mut leaf = FastLeaf::new(self, at);
+        let mut points = vec![self.point(leaf.cell(self), &leaf.weights)];
         loop {
-            let step = &self.steps[leaf.cell.index()];
+            let step = self.steps.at(leaf.slot);
             let i = leaf.exit(step, sense)?;
             leaf.move_to(step, i)?;
-            let point = self.point(leaf.cell, &leaf.weights);
+            let point = self.point(leaf.cell(self), &leaf.weights);
             points.push(point);
             let end: Option<Facet> = leaf.cross(step, i);
             if end.is_some() {

@@ -8,7 +8,8 @@ use super::boundary::{BoundarySurface, boundary_loop, facet_masks, marked_facets
 use super::directions::Flow;
 use super::field::{cell_means, field_between, guiding_field, ranks, smoothed_gradients};
 use super::front::{Front, Side, Stuck, Surroundings, positions_in};
-use super::{FoliationError, FoliationInfo, FoliationParams, regions, section};
+use super::numbering::CurveNumbering;
+use super::{FoliationError, FoliationInfo, FoliationParams, RequestedRegions, regions, section};
 use crate::input::SourceMesh;
 use crate::map::{Centre, Foliation, FoliationParts, Section, Target};
 use crate::progress::Progress;
@@ -101,9 +102,16 @@ pub(super) fn build<const K: usize>(
     progress: &dyn Progress,
 ) -> Result<(Foliation<K>, FoliationInfo), FoliationError> {
     let info = FoliationInfo::default();
-    let mut build = Build { source, target, params, progress, info, clock: Instant::now() };
-    let map = build.run()?;
-    Ok((map, build.info))
+    // Regions that the user names are named, and complained about, in the numbering of the source.
+    let is_free = params.regions == RequestedRegions::default();
+    let numbering = is_free.then(|| CurveNumbering::new(source));
+    let renumbered = numbering.as_ref().map_or(source, |numbering| &numbering.source);
+    let mut build = Build { source: renumbered, target, params, progress, info, clock: Instant::now() };
+    let (mut parts, mut adjacency) = build.run()?;
+    if let Some(numbering) = &numbering {
+        (parts, adjacency) = numbering.restored(source, &parts, &adjacency);
+    }
+    Ok((Foliation::from_parts(source.clone(), adjacency, parts), build.info))
 }
 
 impl<const K: usize> Build<'_, K> {
@@ -125,7 +133,7 @@ impl<const K: usize> Build<'_, K> {
         if self.progress.is_cancelled() { Err(FoliationError::Cancelled(self.info.clone())) } else { Ok(()) }
     }
 
-    fn run(&mut self) -> Result<Foliation<K>, FoliationError> {
+    fn run(&mut self) -> Result<(FoliationParts<K>, Adjacency<K>), FoliationError> {
         self.begin("prepare")?;
         let mut stage = Stage::new(RefinedMesh::unrefined(self.source))?;
         if K == 3 && boundary_loop(stage.mesh.complex(), &stage.adjacency).is_empty() {
@@ -163,7 +171,7 @@ impl<const K: usize> Build<'_, K> {
         let Stage { mesh, adjacency, .. } = stage;
         let parts =
             FoliationParts { target: self.target, mesh, directions, lengths, length_unit: unit, centre, section };
-        Ok(Foliation::from_parts(self.source.clone(), adjacency, parts))
+        Ok((parts, adjacency))
     }
 
     /// Chooses regions or a centre, refining where the mesh is too coarse for them.

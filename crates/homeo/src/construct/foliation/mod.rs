@@ -15,6 +15,7 @@ mod build;
 mod directions;
 mod field;
 mod front;
+mod numbering;
 mod regions;
 mod section;
 
