@@ -20,7 +20,7 @@ impl<'a> Archive<'a> {
         let is_whole = end[4..8] == [0; 4] && end[8..10] == end[10..12];
         readable(is_whole, "the zip archive is split over several disks")?;
         let (count, length, start) = (number(&end[8..10]), number(&end[12..16]), number(&end[16..20]));
-        readable(start + length == body.len(), "the zip directory is not where the end record says")?;
+        readable(body.len().checked_sub(start) == Some(length), "the zip directory is not where the end record says")?;
         let (mut locals, mut directory) = body.split_at(start);
         let mut entries = BTreeMap::new();
         for _ in 0..count {

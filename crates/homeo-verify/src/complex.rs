@@ -8,12 +8,10 @@ use crate::verdict::{Checked, check, decidable, refuted};
 use std::ops::{Deref, Range};
 
 /// "No cell on the other side."
-pub(crate) const NONE: u32 = u32::MAX;
+const NONE: u32 = u32::MAX;
 
-/// The vertices of a cell as sets of local indices, bit by bit.
-pub(crate) const VERTICES: [u8; 4] = [0b0001, 0b0010, 0b0100, 0b1000];
-
-/// The edges of a tetrahedron in the same way.
+/// The vertices of a cell, and the edges of a tetrahedron, as sets of local indices, bit by bit.
+const VERTICES: [u8; 4] = [0b0001, 0b0010, 0b0100, 0b1000];
 pub(crate) const EDGES: [u8; 6] = [0b0011, 0b0101, 0b1001, 0b0110, 0b1010, 0b1100];
 
 /// A complex of cells with `size` vertices each: 4 tetrahedra, 3 triangles, 2 edges, 1 points.
@@ -32,8 +30,7 @@ impl Complex {
         decidable(is_small, "there are more than 2^29 cells or 2^32 - 2 vertices", "split the mesh")?;
         let across = vec![NONE; vertices.len()];
         let mut complex = Complex { size, vertex_count, vertices, across };
-        for c in 0..complex.count() {
-            let cell = complex.cell(c);
+        for (c, cell) in complex.cells().enumerate() {
             let exists = cell.iter().all(|&v| (v as usize) < vertex_count);
             check(exists, rules[0], "a cell has a vertex that does not exist", &[c], &[])?;
             let differ = (1..size).all(|i| !cell[..i].contains(&cell[i]));
@@ -42,9 +39,9 @@ impl Complex {
         let mut facets: Vec<u128> = (0..complex.across.len()).map(|slot| pack(complex.facet(slot), slot)).collect();
         facets.sort_unstable();
         for group in facets.chunk_by(is_same_face) {
-            if let [a, b] = group.iter().map(|&key| place(key)).collect::<Vec<usize>>()[..] {
-                complex.across[a] = b as u32;
-                complex.across[b] = a as u32;
+            if let [a, b] = *group {
+                complex.across[place(a)] = place(b) as u32;
+                complex.across[place(b)] = place(a) as u32;
             } else if group.len() > 2 {
                 let cells: Vec<usize> = group.iter().map(|&key| place(key) / size).collect();
                 let facet = complex.facet(place(group[0]));
@@ -52,10 +49,10 @@ impl Complex {
             }
         }
         // Two cells with the same vertices are neighbours across all facets; two facets already tell.
-        for c in (0..complex.count()).take_while(|_| size > 2) {
+        for (c, cell) in complex.cells().enumerate().take_while(|_| size > 2) {
             let [a, b] = [0, 1].map(|i| complex.across(size * c + i).map(|other| other / size));
             let differ = a.is_none() || a != b;
-            check(differ, rules[0], "two cells have the same vertices", &[c, a.unwrap_or(c)], complex.cell(c))?;
+            check(differ, rules[0], "two cells have the same vertices", &[c, a.unwrap_or(c)], cell)?;
         }
         Ok(complex)
     }
@@ -70,6 +67,11 @@ impl Complex {
         &self.vertices[self.slots(c)]
     }
 
+    /// The vertices of all cells.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = &[u32]> {
+        self.vertices.chunks_exact(self.size)
+    }
+
     /// The same facet as a slot of the neighbour.
     pub(crate) fn across(&self, slot: usize) -> Option<usize> {
         Some(self.across[slot] as usize).filter(|&other| other != NONE as usize)
@@ -80,13 +82,14 @@ impl Complex {
         c * self.size..(c + 1) * self.size
     }
 
-    /// The slots of all facets with two cells, each once, with the same facet as a slot of the other cell.
-    pub(crate) fn inner_facets(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        (0..self.across.len()).filter_map(|slot| self.across(slot).filter(|&other| slot < other).map(|o| (slot, o)))
+    /// The facets with two cells, each once, as a slot of either cell.
+    pub(crate) fn inner_facets(&self) -> impl Iterator<Item = (usize, usize)> {
+        let pairs = (0..self.across.len()).filter_map(|slot| self.across(slot).map(|other| (slot, other)));
+        pairs.filter(|(slot, other)| slot < other)
     }
 
     /// The slots of all facets with one cell.
-    pub(crate) fn boundary_slots(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn boundary_slots(&self) -> impl Iterator<Item = usize> {
         (0..self.across.len()).filter(|&slot| self.across(slot).is_none())
     }
 
@@ -117,8 +120,8 @@ impl Complex {
     ) -> Checked {
         for (a, b) in self.inner_facets() {
             let (c, d) = (a / self.size, b / self.size);
-            let [of_c, of_d] = [a, b].map(|slot| self.induces_sorted_order(slot) == is_positive(slot / self.size));
-            if applies(c, d) && of_c == of_d {
+            let is_sorted = |slot: usize| self.induces_sorted_order(slot) == is_positive(slot / self.size);
+            if applies(c, d) && is_sorted(a) == is_sorted(b) {
                 let message = "two cells, or their images, lie on the same side of their common facet";
                 return Err(refuted(rule, message, &[c, d], &self.facet(a)));
             }
@@ -158,18 +161,11 @@ impl Complex {
         face
     }
 
-    /// Which vertices lie in a cell.
-    pub(crate) fn used_vertices(&self) -> Vec<bool> {
-        let mut used = vec![false; self.vertex_count];
-        self.vertices.iter().for_each(|&v| used[v as usize] = true);
-        used
-    }
-
-    /// Which vertices lie on these facets.
-    pub(crate) fn vertices_on(&self, slots: impl Iterator<Item = usize>) -> Vec<bool> {
-        let mut on = vec![false; self.vertex_count];
-        slots.for_each(|slot| self.facet(slot).iter().for_each(|&v| on[v as usize] = true));
-        on
+    /// Which vertices lie in these cells or faces.
+    pub(crate) fn vertices_of(&self, faces: impl Iterator<Item = impl Deref<Target = [u32]>>) -> Vec<bool> {
+        let mut lies_in_one = vec![false; self.vertex_count];
+        faces.for_each(|face| face.iter().for_each(|&v| lies_in_one[v as usize] = true));
+        lies_in_one
     }
 }
 

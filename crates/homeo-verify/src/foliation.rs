@@ -4,7 +4,7 @@
 //! homeomorphic to `source region x [0, 1]` by `p -> (start of its leaf, length behind p / length of the leaf)`.
 
 use crate::complex::{Complex, is_same_face, place};
-use crate::links::{Shape, check_manifold, shape};
+use crate::links::{Shape, check_manifold};
 use crate::manifest::Target;
 use crate::map_file::FoliationData;
 use crate::section::check_section;
@@ -28,11 +28,11 @@ pub(crate) fn check_foliation(
     let foliation = Foliation { complex, data, centre };
     foliation.check_rows()?;
     let crossings = foliation.check_crossings()?;
-    foliation.check_radial(target)?;
+    let regions = [1, -1, 0].map(|sign| foliation.single_facets(sign));
+    foliation.check_radial(&regions, target)?;
     foliation.check_acyclic()?;
     let [vertices, edges] = complex.small_faces();
     let bipolar = foliation.check_bipolar(edges)? + foliation.check_bipolar(vertices)?;
-    let regions = [1, -1, 0].map(|sign| foliation.single_facets(sign));
     foliation.check_regions_apart(&regions)?;
     let source = foliation.check_region_shapes(&regions, target)?;
     check_section(&source, data, target)?;
@@ -55,7 +55,7 @@ impl Foliation<'_> {
 
     /// The same facet as a slot of the foliated cell beyond.
     fn across(&self, slot: usize) -> Option<usize> {
-        self.complex.across(slot).filter(|&other| Some(other / self.complex.size) != self.centre)
+        self.complex.across(slot).filter(|other| !self.centre.is_some_and(|c| self.complex.slots(c).contains(other)))
     }
 
     /// The foliated cells beyond the facets of a cell that have this sign.
@@ -73,8 +73,8 @@ impl Foliation<'_> {
 
     /// Rule 1: rows sum to zero, only the centre's row is zero, lengths are at least 1.
     fn check_rows(&self) -> Checked {
-        for (c, row) in self.data.directions.chunks_exact(self.complex.size).enumerate() {
-            let cell = self.complex.cell(c);
+        let rows = self.data.directions.chunks_exact(self.complex.size);
+        for (c, (row, cell)) in rows.zip(self.complex.cells()).enumerate() {
             let sum: i32 = row.iter().map(|&d| i32::from(d)).sum();
             check(sum == 0, "1", "the direction of a cell does not sum to zero", &[c], cell)?;
             let is_rest = row.iter().all(|&d| d == 0);
@@ -86,13 +86,11 @@ impl Foliation<'_> {
 
     /// Rule 2: leaves cross every facet between two foliated cells. (At most two cells: see the complex.)
     fn check_crossings(&self) -> Checked<u64> {
+        let is_foliated = |&(a, b): &(usize, usize)| self.across(a).is_some() && self.across(b).is_some();
         let mut count = 0;
-        for (a, b) in self.complex.inner_facets() {
-            let cells = [a, b].map(|slot| slot / self.complex.size);
-            if self.centre.is_some_and(|centre| cells.contains(&centre)) {
-                continue;
-            }
+        for (a, b) in self.complex.inner_facets().filter(is_foliated) {
             if self.sign(a) == 0 || self.sign(a) != -self.sign(b) {
+                let cells = [a, b].map(|slot| slot / self.complex.size);
                 return Err(refuted("2", "no leaf crosses the facet of two cells", &cells, &self.complex.facet(a)));
             }
             count += 1;
@@ -101,13 +99,11 @@ impl Foliation<'_> {
     }
 
     /// Rule 3: around a centre, leaves run between its facets and the boundary, all of both.
-    fn check_radial(&self, target: Target) -> Checked {
+    fn check_radial(&self, regions: &[Vec<usize>; 3], target: Target) -> Checked {
         let Some(centre) = self.centre else { return Ok(()) };
-        for slot in self.complex.slots(centre) {
-            let (is_inner, facet) = (self.complex.across(slot).is_some(), self.complex.facet(slot));
-            check(is_inner, "3", "a facet of the centre lies in the boundary", &[centre], &facet)?;
-        }
-        for slot in [1, -1, 0].into_iter().flat_map(|sign| self.single_facets(sign)) {
+        let is_inside = self.complex.slots(centre).all(|slot| self.complex.across(slot).is_some());
+        check(is_inside, "3", "a facet of the centre lies in the boundary", &[centre], self.complex.cell(centre))?;
+        for &slot in regions.iter().flatten() {
             let is_at_centre = self.complex.across(slot).is_some(); // then the centre is the cell beyond
             let is_source = is_at_centre == (target == Target::Ball);
             let is_right = self.sign(slot) == if is_source { 1 } else { -1 };
@@ -154,7 +150,8 @@ impl Foliation<'_> {
             for (sign, what) in [(1, "begin"), (-1, "end")] {
                 // The facets of a cell that contain the face are those opposite its vertices that are not in the face.
                 let slots = |&(c, mask): &(usize, u8)| {
-                    self.complex.slots(c).filter(move |slot| mask >> (slot % size) & 1 == 0 && self.sign(*slot) == sign)
+                    let slots = (0..size).filter(move |i| mask >> i & 1 == 0).map(move |i| size * c + i);
+                    slots.filter(move |&slot| self.sign(slot) == sign)
                 };
                 let first = around.iter().filter(|&cell| slots(cell).next().is_none()).count();
                 let is_on_region = around.iter().flat_map(slots).any(|slot| self.across(slot).is_none());
@@ -173,11 +170,11 @@ impl Foliation<'_> {
     fn check_regions_apart(&self, [source, sink, _]: &[Vec<usize>; 3]) -> Checked {
         let exist = !source.is_empty() && !sink.is_empty();
         check(exist, "6", "there is no source facet or no sink facet", &[], &[])?;
-        let [on_source, on_sink] = [source, sink].map(|slots| self.complex.vertices_on(slots.iter().copied()));
-        match on_source.iter().zip(on_sink).position(|(&on_source, on_sink)| on_source && on_sink) {
-            Some(v) => Err(refuted("6", "a vertex lies on a source and a sink facet", &[], &[v as u32])),
-            None => Ok(()),
+        let vertices_of = |slots: &[usize]| self.complex.vertices_of(slots.iter().map(|&s| self.complex.facet(s)));
+        for (v, (on_source, on_sink)) in (0..).zip(vertices_of(source).into_iter().zip(vertices_of(sink))) {
+            check(!(on_source && on_sink), "6", "a vertex lies on a source and a sink facet", &[], &[v])?;
         }
+        Ok(())
     }
 
     /// Rule 8, last sentence: the regions have the topology of the target's. Returns the source region.
@@ -190,16 +187,11 @@ impl Foliation<'_> {
             Target::Disk => (circle, nothing),
             Target::Ball => (sphere, nothing),
         };
-        let expected = [("source", end), ("sink", end), ("parallel", wall)];
+        let expected = [("source region", end), ("sink region", end), ("parallel part", wall)];
         for (slots, (name, (components, euler, boundaries))) in regions.iter().zip(expected) {
-            let region = self.complex.facet_complex(slots.iter().copied())?;
-            let found = if region.size == 2 {
-                shape(&region, 0)? // at most two edges at a vertex: already a manifold
-            } else {
-                check_manifold(&region, &format!("{name} region"))?
-            };
+            let found = check_manifold(&self.complex.facet_complex(slots.iter().copied())?, name)?;
             let expected = Shape { components, euler, boundaries };
-            let message = format!("the {name} region has {found:?} instead of {expected:?}");
+            let message = format!("the {name} has {found:?} instead of {expected:?}");
             check(found == expected, "8", &message, &[], &[])?;
         }
         self.complex.facet_complex(regions[0].iter().copied())

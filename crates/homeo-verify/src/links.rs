@@ -65,11 +65,11 @@ fn check_vertex_links(complex: &Complex, edges: &[u128], what: &str) -> Checked 
     }
     complex.inner_facets().for_each(|(slot, _)| add(&complex.facet(slot), -1));
     complex.boundary_slots().for_each(|slot| add(&complex.facet(slot), -1));
-    (0..complex.count()).for_each(|c| add(complex.cell(c), 1));
-    let on_boundary = complex.vertices_on(complex.boundary_slots());
-    for c in 0..complex.count() {
-        let is_wrong = |v: &&u32| euler[**v as usize] != if on_boundary[**v as usize] { 1 } else { 2 };
-        if let Some(&v) = complex.cell(c).iter().find(is_wrong) {
+    complex.cells().for_each(|cell| add(cell, 1));
+    let on_boundary = complex.vertices_of(complex.boundary_slots().map(|slot| complex.facet(slot)));
+    for (c, cell) in complex.cells().enumerate() {
+        let is_right = |v: usize| euler[v] == if on_boundary[v] { 1 } else { 2 };
+        if let Some(&v) = cell.iter().find(|&&v| !is_right(v as usize)) {
             let message = format!("{what}: the link of vertex {v} is neither a sphere nor a disk");
             return Err(refuted("8", message, &[c], &[v]));
         }
@@ -83,12 +83,12 @@ pub(crate) fn shape(complex: &Complex, edge_count: usize) -> Checked<Shape> {
     let mut classes = UnionFind::new(complex.count());
     complex.inner_facets().for_each(|(a, b)| classes.join(a / size, b / size));
     let components = (0..complex.count()).filter(|&c| classes.find(c) == c).count();
-    let vertices = complex.used_vertices().iter().filter(|&&is_used| is_used).count() as i64;
     let single = complex.boundary_slots().count();
-    let facets = ((size * complex.count() + single) / 2) as i64;
-    let cells = complex.count() as i64;
+    let vertices = complex.vertices_of(complex.cells()).iter().filter(|&&is_used| is_used).count();
+    let [vertices, edges, facets, cells] =
+        [vertices, edge_count, (size * complex.count() + single) / 2, complex.count()].map(|count| count as i64);
     let euler = match size {
-        4 => vertices - edge_count as i64 + facets - cells,
+        4 => vertices - edges + facets - cells,
         3 => vertices - facets + cells,
         _ => vertices - cells,
     };

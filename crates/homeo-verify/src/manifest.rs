@@ -23,6 +23,7 @@ impl Target {
     }
 }
 
+/// What the arrays define.
 #[derive(PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Kind {
@@ -75,7 +76,12 @@ impl Manifest {
         readable(count_keys(&value) == count_colons(bytes), "manifest.json repeats a key")?;
         readable(value["format"] == "homeo", "the format is not \"homeo\"")?;
         readable(value["version"] == 1, "this checker reads version 1 only")?;
-        let not_as_stated = |error| unreadable(format!("manifest.json is not as version 1 wants it: {error}"));
+        // Serde would also take a list of the values for an object, and {"text": null} for a text.
+        let are_texts = value["kind"].is_string() && value["target"].is_string();
+        readable(are_texts, "kind or target is missing or not a text")?;
+        let are_objects = value["source"].is_object() && !value["centre"].is_array();
+        readable(are_objects, "source or centre is not an object")?;
+        let not_as_stated = |error| unreadable(format!("manifest.json is not as the format says: {error}"));
         let manifest: Manifest = serde_json::from_slice(bytes).map_err(not_as_stated)?;
         let is_known = |key: &String| OTHER_FIELDS.contains(&key.as_str()) || key.starts_with("note_");
         if let Some(key) = manifest.others.keys().find(|key| !is_known(key)) {

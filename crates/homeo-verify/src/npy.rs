@@ -27,8 +27,7 @@ impl<'a> Array<'a> {
     pub(crate) fn take(archive: &mut Archive<'a>, name: &'a str) -> Result<Self, Unreadable> {
         let array = archive.0.remove(format!("{name}.npy").as_str());
         let bytes = array.ok_or_else(|| unreadable(format!("array {name} is missing")))?;
-        let no_header =
-            || unreadable(format!("array {name} does not begin with a header of NumPy's format 1.0 or 2.0"));
+        let no_header = || unreadable(format!("array {name} has no header of NumPy's format 1.0 or 2.0"));
         let (header, content) = split(bytes).ok_or_else(no_header)?;
         Ok(Array { name, header, content })
     }

@@ -1,48 +1,33 @@
 //! Exact signs and sums of doubles.
 //!
-//! The predicates of `robust` are exact as long as nothing underflows or overflows. Outside
-//! `2^-250 ..= 2^250` (zero aside) the same determinants are computed with integers in units of `2^-1074`.
+//! The predicate of `robust` is exact as long as nothing underflows or overflows. Outside
+//! `2^-250 ..= 2^250` (zero aside) the same determinant is computed with integers in units of `2^-1074`.
 
 use dashu_int::IBig;
-use robust::{Coord, Coord3D};
+use robust::{Coord3D, orient3d};
 use std::cmp::Ordering;
 
 /// A point, or a vertex' image; in the plane the last coordinate does not count.
 pub(crate) type Point = [f64; 3];
 
-fn within_range(points: &[Point]) -> bool {
-    let (smallest, largest) = (f64::from_bits((1023 - 250) << 52), f64::from_bits((1023 + 250) << 52));
-    points.iter().flatten().all(|x| *x == 0.0 || (smallest..=largest).contains(&x.abs()))
-}
-
-fn sign_of(value: f64) -> Ordering {
-    value.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
-}
-
-/// The vector from `a` to `b` in units of `2^-1074`, exact.
-fn step(a: Point, b: Point) -> [IBig; 3] {
-    [0, 1, 2].map(|axis| in_finest_units(b[axis]) - in_finest_units(a[axis]))
-}
-
-/// The sign of `det(b - a, c - a)` of the first two coordinates, exact.
-pub(crate) fn orientation_2d(a: Point, b: Point, c: Point) -> Ordering {
-    if within_range(&[a, b, c]) {
-        let [a, b, c] = [a, b, c].map(|p| Coord { x: p[0], y: p[1] });
-        return sign_of(robust::orient2d(a, b, c));
-    }
-    let ([bx, by, _], [cx, cy, _]) = (step(a, b), step(a, c));
-    (bx * cy).cmp(&(by * cx))
-}
-
 /// The sign of `det(b - a, c - a, d - a)`, exact.
 pub(crate) fn orientation_3d(a: Point, b: Point, c: Point, d: Point) -> Ordering {
-    if within_range(&[a, b, c, d]) {
+    let (smallest, largest) = (f64::from_bits((1023 - 250) << 52), f64::from_bits((1023 + 250) << 52));
+    if [a, b, c, d].iter().flatten().all(|&x| x == 0.0 || (smallest..=largest).contains(&x.abs())) {
         let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p[0], y: p[1], z: p[2] });
-        return sign_of(robust::orient3d(b, a, c, d)); // its convention is the opposite one
+        let determinant = orient3d(b, a, c, d); // its convention is the opposite one
+        return determinant.partial_cmp(&0.0).unwrap_or(Ordering::Equal);
     }
-    let [b, c, d] = [b, c, d].map(|p| step(a, p));
+    let step = |p: Point| [0, 1, 2].map(|axis| in_finest_units(p[axis]) - in_finest_units(a[axis]));
+    let [b, c, d] = [b, c, d].map(step);
     let minor = |x: usize, y: usize| &c[x] * &d[y] - &c[y] * &d[x];
     (&b[0] * minor(1, 2) + &b[1] * minor(2, 0) + &b[2] * minor(0, 1)).cmp(&IBig::ZERO)
+}
+
+/// The sign of `det(b - a, c - a)` of the first two coordinates, exact: that of a prism of height 1.
+pub(crate) fn orientation_2d(a: Point, b: Point, c: Point) -> Ordering {
+    let [a, b, c] = [a, b, c].map(|p| [p[0], p[1], 0.0]);
+    orientation_3d(a, b, c, [a[0], a[1], 1.0])
 }
 
 /// Whether a triangle in space has area zero: its three shadows have.

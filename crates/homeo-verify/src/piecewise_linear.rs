@@ -15,8 +15,7 @@ use std::cmp::Ordering;
 /// Checks that the linear extension of `image` maps the complex homeomorphically onto `[0, 1]^n`, `n = size - 1`.
 pub(crate) fn check_onto_box(complex: &Complex, image: impl Fn(u32) -> Point, rule: &'static str) -> Checked {
     let mut is_positive = Vec::with_capacity(complex.count());
-    for c in 0..complex.count() {
-        let cell = complex.cell(c);
+    for (c, cell) in complex.cells().enumerate() {
         let is_finite = cell.iter().all(|&v| image(v).iter().all(|x| x.is_finite()));
         check(is_finite, rule, "the image of a vertex is not finite", &[c], cell)?;
         let sign = match *cell {

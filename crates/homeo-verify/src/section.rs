@@ -28,8 +28,7 @@ fn check_path(region: &Complex, data: &FoliationData, is_closed: bool) -> Checke
     if let (true, Some(&first), Some(&last)) = (is_closed, path.first(), path.last()) {
         steps.push(edge(last, first));
     }
-    let cells = (0..region.count()).map(|c| region.cell(c));
-    let mut edges: Vec<[u32; 2]> = cells.map(|cell| edge(cell[0], cell[1])).collect();
+    let mut edges: Vec<[u32; 2]> = region.cells().map(|cell| edge(cell[0], cell[1])).collect();
     steps.sort_unstable();
     edges.sort_unstable();
     check(steps == edges, "7", "the section does not run through each source edge once", &[], &[])?;
@@ -51,10 +50,9 @@ fn check_square(region: &Complex, data: &FoliationData) -> Checked {
             _ => return Err(refuted("7", "the section names a vertex twice, or one that does not exist", &[], &[v])),
         }
     }
-    let used = region.used_vertices();
-    for v in 0..used.len() {
+    for (v, (is_used, image)) in (0..).zip(region.vertices_of(region.cells()).into_iter().zip(&images)) {
         let message = "the section's vertices are not those of the source region";
-        check(used[v] == images[v].is_some(), "7", message, &[], &[v as u32])?;
+        check(is_used == image.is_some(), "7", message, &[], &[v])?;
     }
     check_onto_box(region, |v| images[v as usize].unwrap_or_default(), "7")
 }

@@ -17,8 +17,7 @@ pub(crate) fn check_source(map: &MapFile) -> Checked<Complex> {
     let size = map.manifest.target.cell_size();
     let source = Complex::new(size, map.cells.clone(), map.positions.len(), ["S2", "8"])?;
     // S3: positive orientation (n = 3), area other than zero (n = 2).
-    for c in 0..source.count() {
-        let cell = source.cell(c);
+    for (c, cell) in source.cells().enumerate() {
         let at = |i: usize| map.positions[cell[i] as usize];
         if size == 4 {
             let is_positive = orientation_3d(at(0), at(1), at(2), at(3)) == Ordering::Greater;
@@ -29,19 +28,14 @@ pub(crate) fn check_source(map: &MapFile) -> Checked<Complex> {
     }
     // S4: tetrahedra that share a facet lie on opposite sides of it.
     source.check_sides("S4", |_, _| size == 4, |_| true)?;
-    check_topology(&source)?;
-    Ok(source)
-}
-
-/// Rule 8 for the source itself: links, connected, Euler number 1, boundary connected and for n = 3 a sphere.
-fn check_topology(source: &Complex) -> Checked {
-    let found = check_manifold(source, "source")?;
+    // 8: links, connected, Euler number 1, boundary connected and for n = 3 a sphere.
+    let found = check_manifold(&source, "source")?;
     let expected = Shape { components: 1, euler: 1, boundaries: 1 };
     let message = format!("the source is not a ball: it has {found:?} instead of {expected:?}");
     check(found == expected, "8", &message, &[], &[])?;
-    if source.size == 4 {
+    if size == 4 {
         let euler = shape(&source.facet_complex(source.boundary_slots())?, 0)?.euler;
         check(euler == 2, "8", "the boundary of the source does not have Euler number 2", &[], &[])?;
     }
-    Ok(())
+    Ok(source)
 }

@@ -11,9 +11,6 @@ use dashu_base::BitTest;
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 
-/// Sums of volumes with longer denominators than this are not attempted.
-const MAXIMUM_DENOMINATOR_BITS: usize = 4096;
-
 /// Checks the refinement and returns the refined complex with its neighbours.
 pub(crate) fn check_subdivision(map: &MapFile, refinement: &Refinement, source: &Complex) -> Checked<Complex> {
     check_carriers(map, refinement)?;
@@ -53,7 +50,7 @@ fn check_volumes(map: &MapFile, parents: &[u32], source: &Complex, refined: &Com
         let mut sum = RBig::ZERO;
         for volume in volumes.collect::<Checked<Vec<RBig>>>()? {
             sum += volume;
-            let is_short = sum.denominator().bit_len() <= MAXIMUM_DENOMINATOR_BITS;
+            let is_short = sum.denominator().bit_len() <= 4096;
             let message = "the volumes in one source cell have a common denominator of more than 4096 bits";
             let remedy = "place added vertices with fewer different weight sums, for instance powers of two";
             decidable(is_short, message, remedy)?;

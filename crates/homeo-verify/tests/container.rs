@@ -187,6 +187,12 @@ fn manifests() {
     edit("centre", |m| drop(m.as_object_mut().expect("an object").remove("centre")));
     edit("unknown field", |m| m["extra"] = json!(1));
     edit("unknown field", |m| m["source"]["extra"] = json!(1));
+    edit("not a text", |m| m["kind"] = json!({"foliation": null}));
+    edit("not a text", |m| m["target"] = json!({"square": null}));
+    edit("not an object", |m| {
+        let s = &m["source"];
+        m["source"] = json!([s["vertices"], s["cells"], s["content_sha256"], s["name"]]);
+    });
     edit("number of vertices", |m| m["source"]["vertices"] = json!(15));
     edit("do not have the stated", |m| m["source"]["content_sha256"] = json!("A".repeat(64)));
     edit("do not have the stated", |m| m["source"]["content_sha256"] = json!("a".repeat(64)));
@@ -199,6 +205,9 @@ fn manifests() {
     assert_unreadable(&padded, "1 MiB");
     assert_unreadable(&with_entry("manifest.json", |_| vec![b'['; 200_000]), "not JSON");
     assert_unreadable(&with_entry("manifest.json", |_| b"\xff".to_vec()), "not JSON");
+    let (_, mut disk) = all_maps().swap_remove(6);
+    disk.manifest["centre"] = json!([disk.manifest["centre"]["cell"], 1]);
+    assert_unreadable(&disk.bytes(), "not an object");
     for length in [0u64, 1 << 32] {
         let (_, mut disk) = all_maps().swap_remove(6);
         disk.manifest["centre"]["length"] = json!(length);
