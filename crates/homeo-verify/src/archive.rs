@@ -1,142 +1,79 @@
 //! Container rules: a zip archive of stored entries in which every byte belongs to exactly one part.
 //!
-//! The reader copies nothing and accepts one layout only: local entries one after the other from byte 0,
-//! then the central directory, then its end record. So entries cannot overlap or hide, and no two readers
-//! can see different contents.
+//! The reader copies nothing and accepts one layout only: local entries one after the other from byte 0, then the
+//! central directory that lists them in this order, then its end record. It walks through entries and directory
+//! side by side, so entries cannot overlap or hide, and no two readers can see different contents.
 
-use crate::verdict::{Unreadable, unreadable};
+use crate::verdict::{Unreadable, readable, unreadable};
 use std::collections::BTreeMap;
 
-/// The entries of a map file, by name.
-pub(crate) struct Archive<'a> {
-    entries: BTreeMap<&'a str, &'a [u8]>,
-}
-
-/// One line of the central directory, with the range of bytes that the entry takes.
-struct Entry<'a> {
-    name: &'a str,
-    content: &'a [u8],
-    start: usize,
-    end: usize,
-}
-
-const END_LENGTH: usize = 22;
-const CENTRAL_LENGTH: usize = 46;
-const LOCAL_LENGTH: usize = 30;
-const UTF8_NAME: usize = 0x0800;
+/// The entries of a map file that nobody has asked for yet, by name.
+pub(crate) struct Archive<'a>(pub(crate) BTreeMap<&'a str, &'a [u8]>);
 
 impl<'a> Archive<'a> {
-    /// Reads the directory and checks that the entries tile the file.
+    /// Splits the file into its entries.
     pub(crate) fn open(bytes: &'a [u8]) -> Result<Self, Unreadable> {
-        let Some(end) = bytes.len().checked_sub(END_LENGTH) else {
-            return unreadable("it is too short for a zip archive");
-        };
-        if bytes[end..].get(..4) != Some(b"PK\x05\x06") || number(bytes, end + 20, 2)? != 0 {
-            return unreadable("it does not end with a zip end record without comment (truncated?)");
-        }
-        if number(bytes, end + 4, 4)? != 0 || number(bytes, end + 8, 2)? != number(bytes, end + 10, 2)? {
-            return unreadable("the zip archive is split over several disks");
-        }
-        let count = number(bytes, end + 8, 2)?;
-        let directory = number(bytes, end + 16, 4)?;
-        if directory.checked_add(number(bytes, end + 12, 4)?) != Some(end) {
-            return unreadable("the zip directory is not where the end record says");
-        }
-        let mut parts = Vec::new();
-        let mut at = directory;
-        for _ in 0..count {
-            parts.push(read_entry(bytes, &mut at, directory)?);
-        }
-        if at != end {
-            return unreadable("the zip directory has another length than stated");
-        }
-        Self::from_tiling(parts, directory)
-    }
-
-    fn from_tiling(mut parts: Vec<Entry<'a>>, directory: usize) -> Result<Self, Unreadable> {
-        parts.sort_by_key(|part| part.start);
-        let mut covered = 0;
+        let too_short = || unreadable("it is too short for a zip archive");
+        let (body, end) = bytes.split_last_chunk::<22>().ok_or_else(too_short)?;
+        let is_end = end.starts_with(b"PK\x05\x06") && end[20..] == [0; 2];
+        readable(is_end, "it does not end with a zip end record without comment (truncated?)")?;
+        let is_whole = end[4..8] == [0; 4] && end[8..10] == end[10..12];
+        readable(is_whole, "the zip archive is split over several disks")?;
+        let (count, length, start) = (number(&end[8..10]), number(&end[12..16]), number(&end[16..20]));
+        readable(body.len().checked_sub(start) == Some(length), "the zip directory is not where the end record says")?;
+        let (mut locals, mut directory) = body.split_at(start);
         let mut entries = BTreeMap::new();
-        for part in parts {
-            if part.start != covered {
-                return unreadable(format!("entry {:?} overlaps another one or leaves a gap", part.name));
-            }
-            covered = part.end;
-            if entries.insert(part.name, part.content).is_some() {
-                return unreadable(format!("two entries are called {:?}", part.name));
+        for _ in 0..count {
+            let offset = start - locals.len();
+            let (name, content) = take_entry(&mut directory, &mut locals, offset)?;
+            if entries.insert(name, content).is_some() {
+                return Err(unreadable(format!("two entries are called {name:?}")));
             }
         }
-        if covered != directory {
-            return unreadable("there are bytes between the entries and the zip directory");
-        }
-        Ok(Archive { entries })
-    }
-
-    /// The content of one entry.
-    pub(crate) fn entry(&self, name: &str) -> Option<&'a [u8]> {
-        self.entries.get(name).copied()
-    }
-
-    /// The names of all entries.
-    pub(crate) fn names(&self) -> impl Iterator<Item = &'a str> + '_ {
-        self.entries.keys().copied()
+        let is_tiled = locals.is_empty() && directory.is_empty();
+        readable(is_tiled, "there are bytes between the entries, the zip directory and its end record")?;
+        Ok(Archive(entries))
     }
 }
 
-/// Reads the directory line at `at`, moves on, and compares it with the local header.
-fn read_entry<'a>(bytes: &'a [u8], at: &mut usize, directory: usize) -> Result<Entry<'a>, Unreadable> {
-    let line = *at;
-    if bytes.get(line..line + 4) != Some(b"PK\x01\x02") {
-        return unreadable("the zip directory is broken");
-    }
-    let (flags, method) = (number(bytes, line + 8, 2)?, number(bytes, line + 10, 2)?);
-    let (checksum, stored) = (number(bytes, line + 16, 4)?, number(bytes, line + 20, 4)?);
-    let (size, name_length) = (number(bytes, line + 24, 4)?, number(bytes, line + 28, 2)?);
-    let rest = number(bytes, line + 30, 2)? + number(bytes, line + 32, 2)?;
-    let start = number(bytes, line + 42, 4)?;
-    let name_bytes = slice(bytes, line + CENTRAL_LENGTH, name_length)?;
-    *at = line + CENTRAL_LENGTH + name_length + rest;
-    let Ok(name) = std::str::from_utf8(name_bytes) else { return unreadable("the name of an entry is not UTF-8") };
-    if method != 0 || flags & !UTF8_NAME != 0 || stored != size {
-        return unreadable(format!("entry {name:?} is compressed, encrypted or streamed; it has to be stored"));
-    }
-    let same = |offset: usize, expected: usize, placeholder: Option<usize>| -> Result<bool, Unreadable> {
-        let found = number(bytes, start + offset, 4)?;
-        Ok(found == expected || Some(found) == placeholder)
-    };
-    let zip64 = Some(0xffff_ffff); // NumPy writes the sizes of local headers into an extra field
-    let local_method = number(bytes, start + 8, 2)?;
-    let local_name = number(bytes, start + 26, 2)?;
-    if slice(bytes, start, 4)? != b"PK\x03\x04"
-        || number(bytes, start + 6, 2)? != flags
-        || local_method != 0
-        || slice(bytes, start + LOCAL_LENGTH, local_name)? != name_bytes
-        || !same(14, checksum, None)?
-        || !same(18, size, zip64)?
-        || !same(22, size, zip64)?
-    {
-        return unreadable(format!("entry {name:?} differs between the zip directory and its header"));
-    }
-    let begin = start + LOCAL_LENGTH + local_name + number(bytes, start + 28, 2)?;
-    let content = slice(bytes, begin, size)?;
-    let end = begin + size;
-    if end > directory || crc32(content) as usize != checksum {
-        return unreadable(format!("entry {name:?} is damaged (its checksum does not match)"));
-    }
-    Ok(Entry { name, content, start, end })
+/// Takes the next line of the directory and the local entry at `offset`, which have to agree: name and content.
+fn take_entry<'a>(
+    directory: &mut &'a [u8],
+    locals: &mut &'a [u8],
+    offset: usize,
+) -> Result<(&'a str, &'a [u8]), Unreadable> {
+    let line = take(directory, 46)?;
+    let name = take(directory, number(&line[28..30]))?;
+    take(directory, number(&line[30..32]) + number(&line[32..34]))?; // extra field and comment
+    readable(line.starts_with(b"PK\x01\x02"), "the zip directory is broken")?;
+    let text = std::str::from_utf8(name).map_err(|_| unreadable("the name of an entry is not UTF-8"))?;
+    let check = |holds: bool, message: &str| readable(holds, &format!("entry {text:?} {message}"));
+    // Flags: none, or that the name is UTF-8. Method: stored.
+    let is_stored = matches!(line[8..12], [0, 0 | 8, 0, 0]) && line[20..24] == line[24..28];
+    check(is_stored, "is compressed, encrypted or streamed; it has to be stored")?;
+    check(number(&line[42..46]) == offset, "overlaps another one or leaves a gap")?;
+    let header = take(locals, 30)?;
+    let local_name = take(locals, number(&header[26..28]))?;
+    let extra = take(locals, number(&header[28..30]))?;
+    // Flags, method, time, date and checksum; then the sizes, which NumPy writes into a zip64 extra field.
+    let agrees = header.starts_with(b"PK\x03\x04") && header[6..18] == line[8..20] && local_name == name;
+    let size: &[u8] = &[&line[20..24], &[0; 4]].concat();
+    let is_zip64 = header[18..26] == [0xff; 8] && extra == [&[1, 0, 16, 0], size, size].concat();
+    let has_size = is_zip64 || header[18..26] == line[20..28];
+    check(agrees && has_size, "differs between the zip directory and its header")?;
+    let content = take(locals, number(size))?;
+    check(crc32(content) as usize == number(&line[16..20]), "is damaged (its checksum does not match)")?;
+    Ok((text, content))
 }
 
-/// The little-endian number of `length` bytes at `at`.
-fn number(bytes: &[u8], at: usize, length: usize) -> Result<usize, Unreadable> {
-    Ok(slice(bytes, at, length)?.iter().rev().fold(0, |value, &byte| value << 8 | usize::from(byte)))
+/// Takes so many bytes away from the beginning.
+fn take<'a>(bytes: &mut &'a [u8], length: usize) -> Result<&'a [u8], Unreadable> {
+    bytes.split_off(..length).ok_or_else(|| unreadable("the zip archive is truncated"))
 }
 
-/// A range of bytes, or the answer that the file is too short.
-fn slice(bytes: &[u8], at: usize, length: usize) -> Result<&[u8], Unreadable> {
-    match at.checked_add(length).and_then(|end| bytes.get(at..end)) {
-        Some(found) => Ok(found),
-        None => unreadable("the zip archive is truncated"),
-    }
+/// A little-endian number.
+fn number(bytes: &[u8]) -> usize {
+    bytes.iter().rev().fold(0, |value, &byte| value << 8 | usize::from(byte))
 }
 
 /// The checksum that zip uses.

@@ -4,15 +4,14 @@
 //! Construction checks that indices are in range, that a cell's vertices differ, that no facet has more than
 //! two cells, and that no two cells have the same vertices: what makes a list of cells a pseudo-manifold.
 
-use crate::verdict::{Checked, refuted, undecided};
+use crate::verdict::{Checked, check, decidable, refuted};
+use std::ops::{Deref, Range};
 
 /// "No cell on the other side."
-pub(crate) const NONE: u32 = u32::MAX;
+const NONE: u32 = u32::MAX;
 
-/// The vertices of a cell as sets of local indices, bit by bit.
-pub(crate) const VERTICES: [u8; 4] = [0b0001, 0b0010, 0b0100, 0b1000];
-
-/// The edges of a tetrahedron in the same way.
+/// The vertices of a cell, and the edges of a tetrahedron, as sets of local indices, bit by bit.
+const VERTICES: [u8; 4] = [0b0001, 0b0010, 0b0100, 0b1000];
 pub(crate) const EDGES: [u8; 6] = [0b0011, 0b0101, 0b1001, 0b0110, 0b1010, 0b1100];
 
 /// A complex of cells with `size` vertices each: 4 tetrahedra, 3 triangles, 2 edges, 1 points.
@@ -23,68 +22,39 @@ pub(crate) struct Complex {
     across: Vec<u32>,
 }
 
-/// The names of the rules that a complex serves, for its witnesses.
-#[derive(Clone, Copy)]
-pub(crate) struct Rules {
-    /// Indices in range, vertices of a cell different.
-    pub(crate) cells: &'static str,
-    /// At most two cells at a facet.
-    pub(crate) facets: &'static str,
-}
-
 impl Complex {
-    /// Finds the neighbours of all cells; `vertices` lists the cells one after the other.
-    pub(crate) fn new(size: usize, vertices: Vec<u32>, vertex_count: usize, rules: Rules) -> Checked<Self> {
-        if vertices.len() / size > 1 << 29 || vertex_count >= NONE as usize {
-            return undecided("there are more than 2^29 cells or 2^32 - 2 vertices", "split the mesh");
-        }
+    /// Finds the neighbours of all cells; `vertices` lists the cells one after the other. The two rules, for witnesses:
+    /// indices are in range, vertices of a cell and of two cells differ; a facet has at most two cells.
+    pub(crate) fn new(size: usize, vertices: Vec<u32>, vertex_count: usize, rules: [&'static str; 2]) -> Checked<Self> {
+        let is_small = vertices.len() / size <= 1 << 29 && vertex_count < NONE as usize;
+        decidable(is_small, "there are more than 2^29 cells or 2^32 - 2 vertices", "split the mesh")?;
         let across = vec![NONE; vertices.len()];
         let mut complex = Complex { size, vertex_count, vertices, across };
-        for c in 0..complex.count() {
-            let cell = complex.cell(c);
-            if cell.iter().any(|&v| v as usize >= vertex_count) {
-                return refuted(rules.cells, format!("cell {c} has a vertex that does not exist"), &[c], &[]);
-            }
-            if (1..size).any(|i| cell[..i].contains(&cell[i])) {
-                return refuted(rules.cells, format!("cell {c} has a vertex twice"), &[c], cell);
-            }
+        for (c, cell) in complex.cells().enumerate() {
+            let exists = cell.iter().all(|&v| (v as usize) < vertex_count);
+            check(exists, rules[0], "a cell has a vertex that does not exist", &[c], &[])?;
+            let differ = (1..size).all(|i| !cell[..i].contains(&cell[i]));
+            check(differ, rules[0], "a cell has a vertex twice", &[c], cell)?;
         }
-        complex.find_neighbours(rules)?;
-        Ok(complex)
-    }
-
-    fn find_neighbours(&mut self, rules: Rules) -> Checked {
-        let mut facets: Vec<u128> = (0..self.across.len()).map(|slot| pack(self.facet(slot), slot)).collect();
+        let mut facets: Vec<u128> = (0..complex.across.len()).map(|slot| pack(complex.facet(slot), slot)).collect();
         facets.sort_unstable();
         for group in facets.chunk_by(is_same_face) {
-            match *group {
-                [_] => {}
-                [a, b] => {
-                    let (a, b) = (place(a), place(b));
-                    self.across[a] = b as u32;
-                    self.across[b] = a as u32;
-                }
-                _ => {
-                    let cells: Vec<usize> = group.iter().map(|&key| place(key) / self.size).collect();
-                    let (facet, length) = self.facet(place(group[0]));
-                    return refuted(rules.facets, "more than two cells share a facet", &cells, &facet[..length]);
-                }
+            if let [a, b] = *group {
+                complex.across[place(a)] = place(b) as u32;
+                complex.across[place(b)] = place(a) as u32;
+            } else if group.len() > 2 {
+                let cells: Vec<usize> = group.iter().map(|&key| place(key) / size).collect();
+                let facet = complex.facet(place(group[0]));
+                return Err(refuted(rules[1], "more than two cells share a facet", &cells, &facet));
             }
         }
         // Two cells with the same vertices are neighbours across all facets; two facets already tell.
-        for c in 0..if self.size > 2 { self.count() } else { 0 } {
-            if let (Some(a), Some(b)) = (self.beyond(c, 0), self.beyond(c, 1))
-                && a == b
-            {
-                return refuted(
-                    rules.cells,
-                    format!("cells {c} and {a} have the same vertices"),
-                    &[c, a],
-                    self.cell(c),
-                );
-            }
+        for (c, cell) in complex.cells().enumerate().take_while(|_| size > 2) {
+            let [a, b] = [0, 1].map(|i| complex.across(size * c + i).map(|other| other / size));
+            let differ = a.is_none() || a != b;
+            check(differ, rules[0], "two cells have the same vertices", &[c, a.unwrap_or(c)], cell)?;
         }
-        Ok(())
+        Ok(complex)
     }
 
     /// The number of cells.
@@ -94,7 +64,12 @@ impl Complex {
 
     /// The vertices of a cell.
     pub(crate) fn cell(&self, c: usize) -> &[u32] {
-        &self.vertices[c * self.size..(c + 1) * self.size]
+        &self.vertices[self.slots(c)]
+    }
+
+    /// The vertices of all cells.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = &[u32]> {
+        self.vertices.chunks_exact(self.size)
     }
 
     /// The same facet as a slot of the neighbour.
@@ -102,23 +77,24 @@ impl Complex {
         Some(self.across[slot] as usize).filter(|&other| other != NONE as usize)
     }
 
-    /// The cell beyond facet `i` of cell `c`.
-    pub(crate) fn beyond(&self, c: usize, i: usize) -> Option<usize> {
-        self.across(c * self.size + i).map(|other| other / self.size)
+    /// The slots of a cell.
+    pub(crate) fn slots(&self, c: usize) -> Range<usize> {
+        c * self.size..(c + 1) * self.size
     }
 
-    /// The slots of all facets with two cells, each once, with the same facet as a slot of the other cell.
-    pub(crate) fn inner_facets(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        (0..self.across.len()).filter_map(|slot| self.across(slot).filter(|&other| slot < other).map(|o| (slot, o)))
+    /// The facets with two cells, each once, as a slot of either cell.
+    pub(crate) fn inner_facets(&self) -> impl Iterator<Item = (usize, usize)> {
+        let pairs = (0..self.across.len()).filter_map(|slot| self.across(slot).map(|other| (slot, other)));
+        pairs.filter(|(slot, other)| slot < other)
     }
 
     /// The slots of all facets with one cell.
-    pub(crate) fn boundary_slots(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn boundary_slots(&self) -> impl Iterator<Item = usize> {
         (0..self.across.len()).filter(|&slot| self.across(slot).is_none())
     }
 
-    /// The sorted vertices of a facet, and their number.
-    pub(crate) fn facet(&self, slot: usize) -> ([u32; 3], usize) {
+    /// A facet.
+    pub(crate) fn facet(&self, slot: usize) -> Face {
         self.face(slot / self.size, ((1 << self.size) - 1) ^ (1 << (slot % self.size)))
     }
 
@@ -134,14 +110,29 @@ impl Complex {
         !odd
     }
 
-    /// The complex of some facets.
-    pub(crate) fn facet_complex(&self, slots: impl Iterator<Item = usize>, rule: &'static str) -> Checked<Complex> {
-        let mut vertices = Vec::new();
-        for slot in slots {
-            let (facet, length) = self.facet(slot);
-            vertices.extend_from_slice(&facet[..length]);
+    /// Cells that share a facet, as far as `applies` to the two, lie on opposite sides of it: the orientations that they
+    /// induce differ. Cells that are not `is_positive` count as turned over.
+    pub(crate) fn check_sides(
+        &self,
+        rule: &'static str,
+        applies: impl Fn(usize, usize) -> bool,
+        is_positive: impl Fn(usize) -> bool,
+    ) -> Checked {
+        for (a, b) in self.inner_facets() {
+            let (c, d) = (a / self.size, b / self.size);
+            let is_sorted = |slot: usize| self.induces_sorted_order(slot) == is_positive(slot / self.size);
+            if applies(c, d) && is_sorted(a) == is_sorted(b) {
+                let message = "two cells, or their images, lie on the same side of their common facet";
+                return Err(refuted(rule, message, &[c, d], &self.facet(a)));
+            }
         }
-        Complex::new(self.size - 1, vertices, self.vertex_count, Rules { cells: rule, facets: rule })
+        Ok(())
+    }
+
+    /// The complex of some facets.
+    pub(crate) fn facet_complex(&self, slots: impl Iterator<Item = usize>) -> Checked<Complex> {
+        let vertices = slots.flat_map(|slot| self.facet(slot).to_vec()).collect();
+        Complex::new(self.size - 1, vertices, self.vertex_count, ["8"; 2])
     }
 
     /// The kinds of faces of codimension two or more at which links and rule 5 are checked: vertices, edges of tetrahedra.
@@ -159,21 +150,42 @@ impl Complex {
         faces
     }
 
-    /// The sorted vertices of a face of at most three vertices, and their number.
-    pub(crate) fn face(&self, c: usize, mask: u8) -> ([u32; 3], usize) {
-        let (mut face, mut length) = ([0; 3], 0);
+    /// The face of cell `c` with these vertices.
+    pub(crate) fn face(&self, c: usize, mask: u8) -> Face {
+        let mut face = Face { vertices: [0; 3], length: 0 };
         for (_, &v) in self.cell(c).iter().enumerate().filter(|(i, _)| mask >> i & 1 == 1) {
-            face[length] = v;
-            length += 1;
+            face.vertices[face.length] = v;
+            face.length += 1;
         }
-        face[..length].sort_unstable();
-        (face, length)
+        face.vertices[..face.length].sort_unstable();
+        face
+    }
+
+    /// Which vertices lie in these cells or faces.
+    pub(crate) fn vertices_of(&self, faces: impl Iterator<Item = impl Deref<Target = [u32]>>) -> Vec<bool> {
+        let mut lies_in_one = vec![false; self.vertex_count];
+        faces.for_each(|face| face.iter().for_each(|&v| lies_in_one[v as usize] = true));
+        lies_in_one
+    }
+}
+
+/// The sorted vertices of a face: at most three.
+#[derive(PartialEq, Eq)]
+pub(crate) struct Face {
+    vertices: [u32; 3],
+    length: usize,
+}
+
+impl Deref for Face {
+    type Target = [u32];
+    fn deref(&self) -> &[u32] {
+        &self.vertices[..self.length]
     }
 }
 
 /// Vertices and place in one number, ordered by the vertices first.
-fn pack((vertices, length): ([u32; 3], usize), place: usize) -> u128 {
-    vertices[..length].iter().fold(0, |key, &v| key << 32 | u128::from(v)) << 32 | place as u128
+fn pack(face: Face, place: usize) -> u128 {
+    face.iter().fold(0, |key, &v| key << 32 | u128::from(v)) << 32 | place as u128
 }
 
 /// The place, for facets the slot, of a sorted face.

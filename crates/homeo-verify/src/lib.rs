@@ -27,7 +27,7 @@ mod verdict;
 
 pub use verdict::{Claim, Obstacle, Unreadable, Verdict, Witness};
 
-use manifest::Target;
+use manifest::{Kind, Target};
 use map_file::{MapData, MapFile};
 use std::path::Path;
 use verdict::{Checked, Stop, unreadable};
@@ -44,10 +44,8 @@ use verdict::{Checked, Stop, unreadable};
 /// # Ok::<(), homeo_verify::Unreadable>(())
 /// ```
 pub fn verify_file(path: &Path) -> Result<Verdict, Unreadable> {
-    match std::fs::read(path) {
-        Ok(bytes) => verify_bytes(&bytes),
-        Err(error) => unreadable(format!("{}: {error}", path.display())),
-    }
+    let bytes = std::fs::read(path).map_err(|error| unreadable(format!("{}: {error}", path.display())))?;
+    verify_bytes(&bytes)
 }
 
 /// Checks a map file that is already in memory.
@@ -61,7 +59,7 @@ pub fn verify_file(path: &Path) -> Result<Verdict, Unreadable> {
 /// ```
 pub fn verify_bytes(bytes: &[u8]) -> Result<Verdict, Unreadable> {
     let map = MapFile::read(bytes)?;
-    Ok(match check(&map) {
+    Ok(match check_map(&map) {
         Ok(claim) => Verdict::Certified(claim),
         Err(Stop::Undecided(obstacle)) => Verdict::Undecided(obstacle),
         Err(Stop::Refuted(mut witness)) => {
@@ -101,11 +99,11 @@ pub fn compare_source(
 ) -> Result<SourceMatch, Unreadable> {
     let map = MapFile::read(bytes)?;
     let bits = |points: &[[f64; 3]], v: usize| points[v].map(f64::to_bits);
-    let difference = if vertices_per_cell != map.cell_size() {
-        Some(format!("cells of {} vertices, not {vertices_per_cell}", map.cell_size()))
+    let size = map.manifest.target.cell_size();
+    let difference = if vertices_per_cell != size {
+        Some(format!("cells of {size} vertices, not {vertices_per_cell}"))
     } else if (positions.len(), cells.len()) != (map.positions.len(), map.cells.len()) {
-        let counts = (map.positions.len(), map.cells.len() / vertices_per_cell);
-        Some(format!("{} vertices and {} cells", counts.0, counts.1))
+        Some(format!("{} vertices and {} cells", map.positions.len(), map.cells.len() / size))
     } else if let Some(v) = (0..positions.len()).find(|&v| bits(positions, v) != bits(&map.positions, v)) {
         Some(format!("vertex {v} at {:?}, not {:?}", map.positions[v], positions[v]))
     } else {
@@ -119,7 +117,7 @@ pub fn compare_source(
 }
 
 /// Applies every rule and puts the claim into words.
-fn check(map: &MapFile) -> Checked<Claim> {
+fn check_map(map: &MapFile) -> Checked<Claim> {
     let source = source::check_source(map)?;
     let refined = match &map.refinement {
         Some(refinement) => Some(subdivision::check_subdivision(map, refinement, &source)?),
@@ -133,52 +131,36 @@ fn check(map: &MapFile) -> Checked<Claim> {
     ];
     match &map.data {
         MapData::Foliation(data) => {
-            checked.extend(foliation::check_foliation(complex, data, map.manifest.centre, map.manifest.target)?);
+            let centre = map.manifest.centre.as_ref().map(|centre| centre.cell);
+            checked.extend(foliation::check_foliation(complex, data, centre, map.manifest.target)?);
         }
         MapData::PiecewiseLinear(images) => {
-            let dimension = map.manifest.target.dimension();
-            let image = |v: u32| {
-                let row = &images[v as usize * dimension..][..dimension];
-                [row[0], row[1], if dimension == 3 { row[2] } else { 0.0 }]
-            };
-            piecewise_linear::check_onto_box(complex, image, "P")?;
+            piecewise_linear::check_onto_box(complex, |v| images[v as usize], "P")?;
             checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
         }
     }
-    Ok(claim(map, checked))
-}
-
-fn claim(map: &MapFile, checked: Vec<(&'static str, u64)>) -> Claim {
-    let (kind, theorem) = if map.manifest.is_foliation {
-        ("foliation", "theorem on locally bipolar foliations, rules 1-8")
-    } else {
-        ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P")
+    let (kind, theorem) = match map.manifest.kind {
+        Kind::Foliation => ("foliation", "theorem on locally bipolar foliations, rules 1-8"),
+        Kind::PiecewiseLinear => ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P"),
     };
-    let target = match map.manifest.target {
-        Target::Square => "square [0,1]^2",
-        Target::Cube => "cube [0,1]^3",
-        Target::Disk => "diamond |x| + |y| <= 1, and by a fixed homeomorphism onto the unit disk",
-        Target::Ball => "tetrahedron of the format, and by a fixed homeomorphism onto a round ball",
+    let (target, onto) = match map.manifest.target {
+        Target::Square => ("square", "square [0,1]^2"),
+        Target::Cube => ("cube", "cube [0,1]^3"),
+        Target::Disk => ("disk", "diamond |x| + |y| <= 1, and by a fixed homeomorphism onto the unit disk"),
+        Target::Ball => ("ball", "tetrahedron of the format, and by a fixed homeomorphism onto a round ball"),
     };
-    let overlap = if map.manifest.target.dimension() == 3 {
-        "That distant cells of the source do not overlap in space is a property of the input mesh and was not checked."
-    } else {
-        "That cells of the source do not overlap in space is a property of the input mesh and was not checked."
-    };
-    Claim {
-        statement: format!(
-            "The stored map is a homeomorphism from the complex of {} vertices and {} cells onto the {target} ({theorem}).",
-            map.manifest.source_vertices, map.manifest.source_cells
-        ),
+    let complex = format!("complex of {} vertices and {} cells", map.positions.len(), source.count());
+    let limits = [
+        "The claim is about the complex with these cells and the exact rational map that the file defines.",
+        "Whether cells of the source overlap in space is a property of the input mesh and was not decided.",
+        "Evaluation in floating point approximates this map; it is not the certified object.",
+    ];
+    Ok(Claim {
+        statement: format!("The stored map is a homeomorphism from the {complex} onto the {onto} ({theorem})."),
         kind: kind.to_owned(),
-        target: map.manifest.target.name().to_owned(),
+        target: target.to_owned(),
         checked,
-        source_sha256: map.manifest.source_sha256.clone(),
-        limits: vec![
-            "The claim is about the complex with these cells and the exact rational map that the file defines."
-                .to_owned(),
-            overlap.to_owned(),
-            "Evaluation in floating point approximates this map; it is not the certified object.".to_owned(),
-        ],
-    }
+        source_sha256: map.manifest.source.content_sha256.clone(),
+        limits: limits.map(str::to_owned).to_vec(),
+    })
 }

@@ -20,18 +20,18 @@ pub(crate) struct Shape {
 }
 
 /// Checks that every vertex link is a sphere or a ball, and returns the topological numbers.
-pub(crate) fn check_manifold(complex: &Complex, rule: &'static str, what: &str) -> Checked<Shape> {
+pub(crate) fn check_manifold(complex: &Complex, what: &str) -> Checked<Shape> {
     let [vertices, edges] = complex.small_faces();
-    let edges = check_stars(complex, edges, rule, what)?;
-    check_stars(complex, vertices, rule, what)?;
+    let edges = check_stars(complex, edges, what)?;
+    check_stars(complex, vertices, what)?;
     if complex.size == 4 {
-        check_vertex_links(complex, &edges, rule, what)?;
+        check_vertex_links(complex, &edges, what)?;
     }
-    shape(complex, edges.chunk_by(is_same_face).count(), rule)
+    shape(complex, edges.chunk_by(is_same_face).count())
 }
 
 /// The cells around each face of a kind are connected through facets that contain it. Returns the sorted faces.
-fn check_stars(complex: &Complex, kind: &[u8], rule: &'static str, what: &str) -> Checked<Vec<u128>> {
+fn check_stars(complex: &Complex, kind: &[u8], what: &str) -> Checked<Vec<u128>> {
     let (size, faces) = (complex.size, complex.sorted_faces(kind));
     let mut classes = UnionFind::new(faces.len());
     for (a, b) in complex.inner_facets() {
@@ -45,60 +45,57 @@ fn check_stars(complex: &Complex, kind: &[u8], rule: &'static str, what: &str) -
     for group in faces.chunk_by(is_same_face) {
         let first = place(group[0]);
         if let Some(&key) = group.iter().find(|&&key| classes.find(place(key)) != classes.find(first)) {
-            let (face, length) = complex.face(first / kind.len(), kind[first % kind.len()]);
-            let message =
-                format!("{what}: the cells around a face of {length} vertices are not connected through facets");
-            return refuted(rule, message, &[first / kind.len(), place(key) / kind.len()], &face[..length]);
+            let face = complex.face(first / kind.len(), kind[first % kind.len()]);
+            let cells = [first / kind.len(), place(key) / kind.len()];
+            let what = format!("{what}: the cells around a face of {} vertices are not connected", face.len());
+            return Err(refuted("8", format!("{what} through facets"), &cells, &face));
         }
     }
     Ok(faces)
 }
 
 /// Each vertex link, a connected surface by the checks before, is a sphere (inside) or a disk (on the boundary).
-fn check_vertex_links(complex: &Complex, edges: &[u128], rule: &'static str, what: &str) -> Checked {
+fn check_vertex_links(complex: &Complex, edges: &[u128], what: &str) -> Checked {
+    // Euler numbers of the links: edges - facets + cells at each vertex.
     let mut euler = vec![0i64; complex.vertex_count];
-    let mut expected = vec![2i64; complex.vertex_count];
+    let mut add = |vertices: &[u32], sign: i64| vertices.iter().for_each(|&v| euler[v as usize] += sign);
     for group in edges.chunk_by(is_same_face) {
         let edge = place(group[0]);
-        complex.face(edge / 6, EDGES[edge % 6]).0[..2].iter().for_each(|&v| euler[v as usize] += 1);
+        add(&complex.face(edge / 6, EDGES[edge % 6]), 1);
     }
-    let add_facet = |euler: &mut Vec<i64>, slot| complex.facet(slot).0.iter().for_each(|&v| euler[v as usize] -= 1);
-    complex.inner_facets().for_each(|(slot, _)| add_facet(&mut euler, slot));
-    for slot in complex.boundary_slots() {
-        add_facet(&mut euler, slot);
-        complex.facet(slot).0.iter().for_each(|&v| expected[v as usize] = 1);
-    }
-    (0..complex.count()).flat_map(|c| complex.cell(c)).for_each(|&v| euler[v as usize] += 1);
-    for c in 0..complex.count() {
-        if let Some(&v) = complex.cell(c).iter().find(|&&v| euler[v as usize] != expected[v as usize]) {
+    complex.inner_facets().for_each(|(slot, _)| add(&complex.facet(slot), -1));
+    complex.boundary_slots().for_each(|slot| add(&complex.facet(slot), -1));
+    complex.cells().for_each(|cell| add(cell, 1));
+    let on_boundary = complex.vertices_of(complex.boundary_slots().map(|slot| complex.facet(slot)));
+    for (c, cell) in complex.cells().enumerate() {
+        let is_right = |v: usize| euler[v] == if on_boundary[v] { 1 } else { 2 };
+        if let Some(&v) = cell.iter().find(|&&v| !is_right(v as usize)) {
             let message = format!("{what}: the link of vertex {v} is neither a sphere nor a disk");
-            return refuted(rule, message, &[c], &[v]);
+            return Err(refuted("8", message, &[c], &[v]));
         }
     }
     Ok(())
 }
 
 /// Components, Euler number and boundary components of a manifold.
-pub(crate) fn shape(complex: &Complex, edge_count: usize, rule: &'static str) -> Checked<Shape> {
+pub(crate) fn shape(complex: &Complex, edge_count: usize) -> Checked<Shape> {
     let size = complex.size;
     let mut classes = UnionFind::new(complex.count());
     complex.inner_facets().for_each(|(a, b)| classes.join(a / size, b / size));
     let components = (0..complex.count()).filter(|&c| classes.find(c) == c).count();
-    let mut used = vec![false; complex.vertex_count];
-    (0..complex.count()).flat_map(|c| complex.cell(c)).for_each(|&v| used[v as usize] = true);
-    let vertices = used.iter().filter(|&&seen| seen).count() as i64;
     let single = complex.boundary_slots().count();
-    let facets = ((size * complex.count() + single) / 2) as i64;
-    let cells = complex.count() as i64;
+    let vertices = complex.vertices_of(complex.cells()).iter().filter(|&&is_used| is_used).count();
+    let [vertices, edges, facets, cells] =
+        [vertices, edge_count, (size * complex.count() + single) / 2, complex.count()].map(|count| count as i64);
     let euler = match size {
-        4 => vertices - edge_count as i64 + facets - cells,
+        4 => vertices - edges + facets - cells,
         3 => vertices - facets + cells,
         _ => vertices - cells,
     };
     let boundaries = match size {
         2 => single,
         _ if single == 0 => 0,
-        _ => shape(&complex.facet_complex(complex.boundary_slots(), rule)?, 0, rule)?.components,
+        _ => shape(&complex.facet_complex(complex.boundary_slots())?, 0)?.components,
     };
     Ok(Shape { components, euler, boundaries })
 }
@@ -108,11 +105,10 @@ pub(crate) fn shape(complex: &Complex, edge_count: usize, rule: &'static str) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::complex::Rules;
 
     fn numbers(size: usize, cells: &[u32]) -> Option<(usize, i64, usize)> {
-        let complex = Complex::new(size, cells.to_vec(), 12, Rules { cells: "8", facets: "8" }).ok()?;
-        let shape = check_manifold(&complex, "8", "test").ok()?;
+        let complex = Complex::new(size, cells.to_vec(), 12, ["8"; 2]).ok()?;
+        let shape = check_manifold(&complex, "test").ok()?;
         Some((shape.components, shape.euler, shape.boundaries))
     }
 

@@ -1,6 +1,6 @@
 //! `homeo-verify MAP`: checks one map file and says what was proved.
 
-use homeo_verify::{Unreadable, Verdict, verify_file};
+use homeo_verify::{Verdict, verify_file};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::process::ExitCode;
@@ -21,18 +21,13 @@ Example: homeo-verify spot.homeo --json
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (text, code) = if arguments.iter().any(|argument| argument == "--help" || argument == "-h") {
-        (HELP.to_owned(), 0)
-    } else {
-        run(&arguments).unwrap_or((HELP.to_owned(), 2))
-    };
     // A reader that went away is no reason to fail: the verdict is in the exit code.
-    let _ = if code == 2 { std::io::stderr().write_all(text.as_bytes()) } else { print(&text) };
+    let (code, _) = match run(&arguments) {
+        Some((text, code)) => (code, std::io::stdout().write_all(text.as_bytes())),
+        None if arguments == ["--help"] => (0, std::io::stdout().write_all(HELP.as_bytes())),
+        None => (2, std::io::stderr().write_all(HELP.as_bytes())),
+    };
     ExitCode::from(code)
-}
-
-fn print(text: &str) -> std::io::Result<()> {
-    std::io::stdout().write_all(text.as_bytes())
 }
 
 /// What to print and the exit code; `None` for wrong usage.
@@ -43,67 +38,32 @@ fn run(arguments: &[String]) -> Option<(String, u8)> {
         match argument.as_str() {
             "--json" => as_json = true,
             "--source-hash" => source_hash = Some(rest.next()?),
-            option if option.starts_with("--") => return None,
+            option if option.starts_with('-') => return None,
             _ if map.is_some() => return None,
             _ => map = Some(argument),
         }
     }
-    let (report, code) = report(verify_file(map?.as_ref()), source_hash);
-    Some((if as_json { format!("{report}\n") } else { for_people(&report) }, code))
-}
-
-/// The verdict as an object whose first field is the answer, and the exit code.
-fn report(answer: Result<Verdict, Unreadable>, source_hash: Option<&String>) -> (Value, u8) {
-    match answer {
-        Ok(Verdict::Certified(claim))
-            if source_hash.is_some_and(|hash| !hash.eq_ignore_ascii_case(&claim.source_sha256)) =>
-        {
-            (
-                json!({"verdict": "other source", "source_sha256": claim.source_sha256, "expected_sha256": source_hash}),
-                3,
-            )
-        }
-        Ok(Verdict::Certified(claim)) => {
-            let checked: Vec<Value> =
-                claim.checked.iter().map(|(what, count)| json!({"what": what, "count": count})).collect();
-            let report = json!({
-                "verdict": "certified", "statement": claim.statement, "kind": claim.kind, "target": claim.target,
-                "checked": checked, "source_sha256": claim.source_sha256, "limits": claim.limits,
-            });
-            (report, 0)
-        }
-        Ok(Verdict::Refuted(witness)) => {
-            let report = json!({
-                "verdict": "refuted", "rule": witness.rule, "message": witness.message,
-                "cells": witness.cells, "vertices": witness.vertices, "points": witness.points,
-            });
-            (report, 5)
-        }
-        Ok(Verdict::Undecided(obstacle)) => {
-            (json!({"verdict": "undecided", "message": obstacle.message, "remedy": obstacle.remedy}), 4)
-        }
+    let is_other = |hash: &str| source_hash.is_some_and(|expected| !expected.eq_ignore_ascii_case(hash));
+    let (report, code) = match verify_file(map?.as_ref()) {
         Err(error) => (json!({"verdict": "unreadable", "message": error.message}), 3),
-    }
+        Ok(Verdict::Certified(claim)) if is_other(&claim.source_sha256) => {
+            (json!({"verdict": "other source", "source_sha256": claim.source_sha256}), 3)
+        }
+        Ok(verdict @ Verdict::Certified(_)) => (json!(verdict), 0),
+        Ok(verdict @ Verdict::Undecided(_)) => (json!(verdict), 4),
+        Ok(verdict @ Verdict::Refuted(_)) => (json!(verdict), 5),
+    };
+    Some((if as_json { format!("{report}\n") } else { lines("", &report) }, code))
 }
 
-/// The same, one line for each field and each item of a list (at most twenty).
-fn for_people(report: &Value) -> String {
-    let mut text = format!("{}\n", report["verdict"].as_str().unwrap_or_default());
-    for (key, value) in report.as_object().into_iter().flatten().filter(|(key, _)| *key != "verdict") {
-        let plain = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-        match value.as_array() {
-            None => text += &format!("{key}: {}\n", plain(value)),
-            Some(items) if items.is_empty() => {}
-            Some(items) => {
-                text += &format!("{key} ({}):\n", items.len());
-                for item in items.iter().take(20) {
-                    text += &match (item.get("count"), item.get("what").and_then(Value::as_str)) {
-                        (Some(count), Some(what)) => format!("  {:>10}  {what}\n", count.to_string()),
-                        _ => format!("  {}\n", plain(item)),
-                    };
-                }
-            }
+/// The same for people: a line `key: value` for each text, number and list.
+fn lines(key: &str, value: &Value) -> String {
+    match value {
+        Value::Object(fields) => fields.iter().map(|(key, value)| lines(key, value)).collect(),
+        Value::Array(items) if items.iter().all(Value::is_string) => {
+            items.iter().map(|item| lines(key, item)).collect()
         }
+        Value::String(text) => format!("{key}: {text}\n"),
+        other => format!("{key}: {other}\n"),
     }
-    text
 }

@@ -1,98 +1,69 @@
 //! Container rules: arrays in NumPy's format 1.0 or 2.0, little endian, C order.
 //!
-//! Only the header that NumPy itself writes is accepted, so that its meaning is not a matter of parsing.
+//! The header is compared with the only text that is right for the expected type and shape and the number of bytes,
+//! spelled as NumPy spells it; so its meaning is not a matter of parsing.
 
 use crate::archive::Archive;
-use crate::verdict::{Unreadable, unreadable};
+use crate::number::Point;
+use crate::verdict::{Unreadable, readable, unreadable};
 
-/// A number type that an array may hold.
-pub(crate) trait Element: Sized {
-    /// NumPy's name of the type.
-    const NAME: &'static str;
-    /// Bytes of one element.
-    const SIZE: usize;
-    /// The element that these `SIZE` bytes mean.
-    fn decode(bytes: &[u8]) -> Self;
-}
-
-macro_rules! element {
-    ($type:ty, $name:literal) => {
-        impl Element for $type {
-            const NAME: &'static str = $name;
-            const SIZE: usize = size_of::<$type>();
-            fn decode(bytes: &[u8]) -> Self {
-                let mut buffer = [0; size_of::<$type>()];
-                buffer.copy_from_slice(bytes);
-                <$type>::from_le_bytes(buffer)
-            }
-        }
-    };
-}
-element!(f64, "<f8");
-element!(i64, "<i8");
-element!(u32, "<u4");
-element!(i8, "|i1");
+/// A number type that an array may hold: NumPy's name for it, and what its bytes mean.
+pub(crate) struct Number<T, const SIZE: usize>(&'static str, fn([u8; SIZE]) -> T);
+pub(crate) const F8: Number<f64, 8> = Number("<f8", f64::from_le_bytes);
+pub(crate) const I8: Number<i64, 8> = Number("<i8", i64::from_le_bytes);
+pub(crate) const U4: Number<u32, 4> = Number("<u4", u32::from_le_bytes);
+pub(crate) const I1: Number<i8, 1> = Number("|i1", i8::from_le_bytes);
 
 /// An array that is still bytes.
-pub(crate) struct RawArray<'a> {
+pub(crate) struct Array<'a> {
     name: &'a str,
-    kind: &'a str,
-    shape: Vec<usize>,
+    header: &'a str,
     /// The elements as stored.
     pub(crate) content: &'a [u8],
 }
 
-/// Finds the array `name` in the archive and reads its header.
-pub(crate) fn find<'a>(archive: &Archive<'a>, name: &'a str) -> Result<RawArray<'a>, Unreadable> {
-    let Some(bytes) = archive.entry(&format!("{name}.npy")) else {
-        return unreadable(format!("array {name} is missing"));
-    };
-    match parse(bytes) {
-        Some((kind, shape, content)) => Ok(RawArray { name, kind, shape, content }),
-        None => unreadable(format!("array {name} does not begin with a header as NumPy writes it (C order)")),
+impl<'a> Array<'a> {
+    /// Takes the array `name` out of the archive.
+    pub(crate) fn take(archive: &mut Archive<'a>, name: &'a str) -> Result<Self, Unreadable> {
+        let array = archive.0.remove(format!("{name}.npy").as_str());
+        let bytes = array.ok_or_else(|| unreadable(format!("array {name} is missing")))?;
+        let no_header = || unreadable(format!("array {name} has no header of NumPy's format 1.0 or 2.0"));
+        let (header, content) = split(bytes).ok_or_else(no_header)?;
+        Ok(Array { name, header, content })
+    }
+
+    /// The elements, when type and shape are as stated; any number of rows without `rows`. One column means one dimension.
+    pub(crate) fn read<T, const SIZE: usize>(
+        &self,
+        Number(kind, decode): Number<T, SIZE>,
+        rows: Option<usize>,
+        columns: usize,
+    ) -> Result<Vec<T>, Unreadable> {
+        let rows = rows.unwrap_or(self.content.len() / (SIZE * columns));
+        let shape = if columns == 1 { format!("({rows},)") } else { format!("({rows}, {columns})") };
+        let expected = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
+        let (name, found) = (self.name, self.header);
+        let message = format!("the header of array {name} has to be {expected} (C order), not {found}");
+        readable(found == expected, &message)?;
+        let is_full = self.content.len() == rows * columns * SIZE;
+        readable(is_full, &format!("array {name} has another number of bytes than its shape says"))?;
+        Ok(self.content.as_chunks().0.iter().map(|&bytes| decode(bytes)).collect())
+    }
+
+    /// Rows of one to three coordinates; the others are 0.
+    pub(crate) fn read_points(&self, rows: Option<usize>, columns: usize) -> Result<Vec<Point>, Unreadable> {
+        let numbers = self.read(F8, rows, columns)?;
+        Ok(numbers.chunks_exact(columns).map(|row| [0, 1, 2].map(|i| row.get(i).copied().unwrap_or(0.0))).collect())
     }
 }
 
-/// Splits an array into type, shape and elements.
-fn parse(bytes: &[u8]) -> Option<(&str, Vec<usize>, &[u8])> {
-    let rest = bytes.strip_prefix(b"\x93NUMPY")?;
-    let (length, rest) = match rest {
+/// Splits an array into the text of its header, without padding, and its elements.
+fn split(bytes: &[u8]) -> Option<(&str, &[u8])> {
+    let (length, rest) = match bytes.strip_prefix(b"\x93NUMPY")? {
         [1, 0, a, b, rest @ ..] => (u32::from_le_bytes([*a, *b, 0, 0]), rest),
         [2, 0, a, b, c, d, rest @ ..] => (u32::from_le_bytes([*a, *b, *c, *d]), rest),
         _ => return None,
     };
     let (header, content) = rest.split_at_checked(usize::try_from(length).ok()?)?;
-    let header = std::str::from_utf8(header).ok()?.strip_suffix('\n')?.trim_end_matches(' ');
-    let (kind, rest) = header.strip_prefix("{'descr': '")?.split_once('\'')?;
-    let dimensions = rest.strip_prefix(", 'fortran_order': False, 'shape': (")?.strip_suffix("), }")?;
-    let shape = match dimensions.strip_suffix(',') {
-        Some(single) => vec![dimension(single)?],
-        None => dimensions.split(", ").map(dimension).collect::<Option<Vec<usize>>>()?,
-    };
-    (dimensions.contains(',')).then_some((kind, shape, content))
-}
-
-/// A plain decimal number.
-fn dimension(text: &str) -> Option<usize> {
-    let plain = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    text.parse().ok().filter(|_| plain)
-}
-
-impl RawArray<'_> {
-    /// The elements, when type and shape are as stated; `None` in `expected` admits any number of rows.
-    pub(crate) fn read<T: Element>(&self, expected: &[Option<usize>]) -> Result<Vec<T>, Unreadable> {
-        let name = self.name;
-        if self.kind != T::NAME {
-            return unreadable(format!("array {name} has type {:?} instead of {:?}", self.kind, T::NAME));
-        }
-        let fits = |(found, expected): (&usize, &Option<usize>)| expected.is_none_or(|n| n == *found);
-        if self.shape.len() != expected.len() || !self.shape.iter().zip(expected).all(fits) {
-            return unreadable(format!("array {name} has shape {:?}, which the manifest does not allow", self.shape));
-        }
-        let length = self.shape.iter().try_fold(T::SIZE, |product, &n| product.checked_mul(n));
-        if length != Some(self.content.len()) {
-            return unreadable(format!("array {name} has another number of bytes than its shape says"));
-        }
-        Ok(self.content.chunks_exact(T::SIZE).map(T::decode).collect())
-    }
+    Some((std::str::from_utf8(header).ok()?.strip_suffix('\n')?.trim_end_matches(' '), content))
 }

@@ -1,57 +1,40 @@
 //! Exact signs and sums of doubles.
 //!
-//! The predicates of `robust` are exact as long as nothing underflows or overflows. Outside
-//! `2^-250 ..= 2^250` (zero aside) the same determinants are computed with rational numbers.
+//! The predicate of `robust` is exact as long as nothing underflows or overflows. Outside
+//! `2^-250 ..= 2^250` (zero aside) the same determinant is computed with integers in units of `2^-1074`.
 
 use dashu_int::IBig;
-use dashu_ratio::RBig;
-use robust::{Coord, Coord3D};
+use robust::{Coord3D, orient3d};
 use std::cmp::Ordering;
 
-/// A point, or a vertex' image; only the first two coordinates count in the plane.
+/// A point, or a vertex' image; in the plane the last coordinate does not count.
 pub(crate) type Point = [f64; 3];
-
-fn within_range(points: &[&[f64]]) -> bool {
-    let (smallest, largest) = (f64::from_bits((1023 - 250) << 52), f64::from_bits((1023 + 250) << 52));
-    points.iter().flat_map(|p| p.iter()).all(|x| *x == 0.0 || (smallest..=largest).contains(&x.abs()))
-}
-
-fn sign_of(value: f64) -> Ordering {
-    value.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
-}
-
-/// The exact value of a finite double. (Callers have refused all others; those would count as 0.)
-fn exact(value: f64) -> RBig {
-    RBig::try_from(value).unwrap_or(RBig::ZERO)
-}
-
-/// The sign of `det(b - a, c - a)`, exact.
-pub(crate) fn orientation_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Ordering {
-    if within_range(&[&a, &b, &c]) {
-        let [a, b, c] = [a, b, c].map(|p| Coord { x: p[0], y: p[1] });
-        return sign_of(robust::orient2d(a, b, c));
-    }
-    let along = |p: [f64; 2], axis: usize| exact(p[axis]) - exact(a[axis]);
-    (along(b, 0) * along(c, 1)).cmp(&(along(b, 1) * along(c, 0)))
-}
 
 /// The sign of `det(b - a, c - a, d - a)`, exact.
 pub(crate) fn orientation_3d(a: Point, b: Point, c: Point, d: Point) -> Ordering {
-    if within_range(&[&a, &b, &c, &d]) {
+    let (smallest, largest) = (f64::from_bits((1023 - 250) << 52), f64::from_bits((1023 + 250) << 52));
+    if [a, b, c, d].iter().flatten().all(|&x| x == 0.0 || (smallest..=largest).contains(&x.abs())) {
         let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p[0], y: p[1], z: p[2] });
-        return sign_of(robust::orient3d(b, a, c, d)); // its convention is the opposite one
+        let determinant = orient3d(b, a, c, d); // its convention is the opposite one
+        return determinant.partial_cmp(&0.0).unwrap_or(Ordering::Equal);
     }
-    let rows = [b, c, d].map(|p| [0, 1, 2].map(|axis| exact(p[axis]) - exact(a[axis])));
-    let minor = |x: usize, y: usize| &rows[1][x] * &rows[2][y] - &rows[1][y] * &rows[2][x];
-    let determinant = &rows[0][0] * minor(1, 2) + &rows[0][1] * minor(2, 0) + &rows[0][2] * minor(0, 1);
-    determinant.cmp(&RBig::ZERO)
+    let step = |p: Point| [0, 1, 2].map(|axis| in_finest_units(p[axis]) - in_finest_units(a[axis]));
+    let [b, c, d] = [b, c, d].map(step);
+    let minor = |x: usize, y: usize| &c[x] * &d[y] - &c[y] * &d[x];
+    (&b[0] * minor(1, 2) + &b[1] * minor(2, 0) + &b[2] * minor(0, 1)).cmp(&IBig::ZERO)
+}
+
+/// The sign of `det(b - a, c - a)` of the first two coordinates, exact: that of a prism of height 1.
+pub(crate) fn orientation_2d(a: Point, b: Point, c: Point) -> Ordering {
+    let [a, b, c] = [a, b, c].map(|p| [p[0], p[1], 0.0]);
+    orientation_3d(a, b, c, [a[0], a[1], 1.0])
 }
 
 /// Whether a triangle in space has area zero: its three shadows have.
 pub(crate) fn is_flat_triangle(a: Point, b: Point, c: Point) -> bool {
     [(0, 1), (1, 2), (2, 0)].iter().all(|&(x, y)| {
-        let shadow = |p: Point| [p[x], p[y]];
-        orientation_2d(shadow(a), shadow(b), shadow(c)) == Ordering::Equal
+        let [a, b, c] = [a, b, c].map(|p| [p[x], p[y], 0.0]);
+        orientation_2d(a, b, c) == Ordering::Equal
     })
 }
 
@@ -81,7 +64,7 @@ mod tests {
             assert_eq!(orientation_3d(o, x, y, z), Ordering::Greater);
             assert_eq!(orientation_3d(x, o, y, z), Ordering::Less);
             assert_eq!(orientation_3d(o, x, y, at(5., 9., 0.)), Ordering::Equal);
-            assert_eq!(orientation_2d([0., 0.], [scale, 0.], [0., scale]), Ordering::Greater);
+            assert_eq!(orientation_2d(o, x, y), Ordering::Greater);
             assert!(is_flat_triangle(o, at(1., 2., 3.), at(2., 4., 6.)));
             assert!(!is_flat_triangle(o, at(1., 2., 3.), at(2., 4., 7.)));
         }

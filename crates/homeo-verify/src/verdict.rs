@@ -1,8 +1,6 @@
-//! The three answers, and the reason to stop early.
-//!
-//! Every rule of the checker returns `Checked`: either it holds, or the check stops with a witness
-//! (the file's claim is false) or with an obstacle (this checker cannot decide).
+//! The three answers, and the reason to stop early: a witness (a rule fails), or an obstacle (this checker cannot decide).
 
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// What the checker answers about a readable map file.
@@ -10,16 +8,11 @@ use std::fmt;
 /// # Example
 /// ```
 /// use homeo_verify::Verdict;
-/// fn exit_code(verdict: &Verdict) -> u8 {
-///     match verdict {
-///         Verdict::Certified(_) => 0,
-///         Verdict::Undecided(_) => 4,
-///         Verdict::Refuted(_) => 5,
-///     }
-/// }
+/// let is_certified = |verdict: &Verdict| matches!(verdict, Verdict::Certified(_));
 /// ```
 #[must_use]
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "verdict", rename_all = "lowercase")]
 pub enum Verdict {
     /// Every hypothesis of the theorem holds: the stored map is a homeomorphism.
     Certified(Claim),
@@ -30,7 +23,7 @@ pub enum Verdict {
 }
 
 /// What has been established.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Claim {
     /// The claim in words, with the theorem that was applied.
     pub statement: String,
@@ -39,6 +32,7 @@ pub struct Claim {
     /// `square`, `disk`, `cube` or `ball`.
     pub target: String,
     /// What was checked, and how many times.
+    #[serde(serialize_with = "as_object")]
     pub checked: Vec<(&'static str, u64)>,
     /// SHA-256 of the source mesh as stored, in lower-case hexadecimal digits.
     pub source_sha256: String,
@@ -46,8 +40,12 @@ pub struct Claim {
     pub limits: Vec<String>,
 }
 
+fn as_object<S: Serializer>(pairs: &[(&str, u64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().copied())
+}
+
 /// Where a rule of `docs/certificate-format-v1.md` fails.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Witness {
     /// The rule's name, for instance `"5"` or `"S3"`.
     pub rule: &'static str,
@@ -62,7 +60,7 @@ pub struct Witness {
 }
 
 /// Why there is no answer, and what would help.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Obstacle {
     /// What stopped the check.
     pub message: String,
@@ -91,13 +89,17 @@ impl fmt::Display for Unreadable {
 
 impl std::error::Error for Unreadable {}
 
-/// Shorthand for a container rule that fails.
-pub(crate) fn unreadable<T>(message: impl Into<String>) -> Result<T, Unreadable> {
-    Err(Unreadable { message: message.into() })
+/// The container rule that fails.
+pub(crate) fn unreadable(message: impl Into<String>) -> Unreadable {
+    Unreadable { message: message.into() }
+}
+
+/// Goes on if a container rule holds.
+pub(crate) fn readable(holds: bool, message: &str) -> Result<(), Unreadable> {
+    if holds { Ok(()) } else { Err(unreadable(message)) }
 }
 
 /// Why a check stops before its end.
-#[derive(Debug)]
 pub(crate) enum Stop {
     Refuted(Witness),
     Undecided(Obstacle),
@@ -106,18 +108,18 @@ pub(crate) enum Stop {
 /// The result of checking one rule.
 pub(crate) type Checked<T = ()> = Result<T, Stop>;
 
-/// Stops with a witness.
-pub(crate) fn refuted<T>(
-    rule: &'static str,
-    message: impl Into<String>,
-    cells: &[usize],
-    vertices: &[u32],
-) -> Checked<T> {
+/// The witness of a rule that fails.
+pub(crate) fn refuted(rule: &'static str, message: impl Into<String>, cells: &[usize], vertices: &[u32]) -> Stop {
     let cells = cells.iter().map(|&c| u32::try_from(c).unwrap_or(u32::MAX)).collect();
-    Err(Stop::Refuted(Witness { rule, message: message.into(), cells, vertices: vertices.to_vec(), points: vec![] }))
+    Stop::Refuted(Witness { rule, message: message.into(), cells, vertices: vertices.to_vec(), points: vec![] })
 }
 
-/// Stops without an answer.
-pub(crate) fn undecided<T>(message: &str, remedy: &str) -> Checked<T> {
-    Err(Stop::Undecided(Obstacle { message: message.into(), remedy: remedy.into() }))
+/// Goes on if a rule holds.
+pub(crate) fn check(holds: bool, rule: &'static str, message: &str, cells: &[usize], vertices: &[u32]) -> Checked {
+    if holds { Ok(()) } else { Err(refuted(rule, message, cells, vertices)) }
+}
+
+/// Goes on if this checker has the means to.
+pub(crate) fn decidable(holds: bool, message: &str, remedy: &str) -> Checked {
+    if holds { Ok(()) } else { Err(Stop::Undecided(Obstacle { message: message.into(), remedy: remedy.into() })) }
 }

@@ -89,6 +89,41 @@ fn entries_that_overlap_or_hide() {
 }
 
 #[test]
+fn entries_in_another_order_than_the_directory() {
+    let entries = write::entries(&square());
+    let bytes = write::zip(&entries[..2]);
+    let line =
+        |from: usize| bytes[from..].windows(4).position(|window| window == b"PK\x01\x02").expect("a line") + from;
+    let (first, end) = (line(0), bytes.len() - 22);
+    let second = line(first + 4);
+    let turned = [&bytes[..first], &bytes[second..end], &bytes[first..second], &bytes[end..]].concat();
+    assert_unreadable(&turned, "overlaps another one or leaves a gap");
+}
+
+/// NumPy writes `0xffff_ffff` as sizes into the local headers, and the sizes into an extra field.
+#[test]
+fn sizes_in_an_extra_field() {
+    let entries = write::entries(&square());
+    let with_extra = |stated: u64| {
+        let mut bytes = write::zip(&entries);
+        let directory = bytes.windows(4).position(|window| window == b"PK\x01\x02").expect("a directory");
+        // The last entry: the offsets of the others stay.
+        let at = bytes[..directory].windows(4).rposition(|window| window == b"PK\x03\x04").expect("an entry");
+        let extra = [&[1, 0, 16, 0], &stated.to_le_bytes()[..], &stated.to_le_bytes()].concat();
+        bytes[at + 18..at + 26].fill(0xff);
+        bytes[at + 28] = extra.len() as u8;
+        let behind_name = at + 30 + entries.last().expect("an entry").0.len();
+        bytes.splice(behind_name..behind_name, extra);
+        let end = bytes.len() - 22;
+        bytes[end + 16..end + 20].copy_from_slice(&(directory as u32 + 20).to_le_bytes());
+        bytes
+    };
+    let size = entries.last().expect("an entry").1.len() as u64;
+    assert!(matches!(verify_bytes(&with_extra(size)), Ok(Verdict::Certified(_))));
+    assert_unreadable(&with_extra(size + 1), "differs");
+}
+
+#[test]
 fn entries_of_another_kind_of_map() {
     let mut entries = write::entries(&square());
     entries.push(("note_anything".into(), vec![]));
@@ -111,8 +146,8 @@ fn arrays() {
         with_entry("directions.npy", |bytes| replace(bytes, from.as_bytes(), to.as_bytes()))
     };
     assert_unreadable(&header("'fortran_order': False", "'fortran_order': True "), "C order");
-    assert_unreadable(&header("|i1", "|u1"), "type");
-    assert_unreadable(&header("|i1", "|O1"), "type");
+    assert_unreadable(&header("|i1", "|u1"), "header");
+    assert_unreadable(&header("|i1", "|O1"), "header");
     assert_unreadable(&header("(18, 3)", "(3, 18)"), "shape");
     assert_unreadable(&header("(18, 3)", "(1854,)"), "shape");
     assert_unreadable(&header("(18, 3)", "(18 ,3)"), "header");
@@ -121,13 +156,13 @@ fn arrays() {
     assert_unreadable(&header("'descr'", "'desct'"), "header");
     assert_unreadable(&with_entry("directions.npy", |bytes| [bytes, &[0]].concat()), "number of bytes");
     let swapped = with_entry("source_positions.npy", |bytes| replace(bytes, b"<f8", b">f8"));
-    assert_unreadable(&swapped, "type");
+    assert_unreadable(&swapped, "header");
     let huge = with_entry("source_positions.npy", |bytes| {
         let content = write::npy("<f8", "(18446744073709551615, 3)", &[]);
         assert!(bytes.len() > content.len());
         content
     });
-    assert_unreadable(&huge, "number of bytes");
+    assert_unreadable(&huge, "header");
     let second_version = with_entry("directions.npy", |bytes| {
         let length = u32::from(u16::from_le_bytes([bytes[8], bytes[9]]));
         [b"\x93NUMPY\x02\x00", &length.to_le_bytes()[..], &bytes[10..]].concat()
@@ -145,24 +180,37 @@ fn manifests() {
     edit("version 1 only", |m| m["version"] = json!(2));
     edit("version", |m| m["version"] = json!(1.0));
     edit("format", |m| m["format"] = json!("homeomorphism"));
-    edit("unknown kind", |m| m["kind"] = json!("harmonic"));
-    edit("unknown target", |m| m["target"] = json!("torus"));
+    edit("unknown variant", |m| m["kind"] = json!("harmonic"));
+    edit("unknown variant", |m| m["target"] = json!("torus"));
     edit("disagree", |m| m["dimension"] = json!(3));
     edit("centre", |m| m["centre"] = json!({"cell": 0, "length": 1}));
     edit("centre", |m| drop(m.as_object_mut().expect("an object").remove("centre")));
     edit("unknown field", |m| m["extra"] = json!(1));
+    edit("unknown field", |m| m["source"]["extra"] = json!(1));
+    edit("not a text", |m| m["kind"] = json!({"foliation": null}));
+    edit("not a text", |m| m["target"] = json!({"square": null}));
+    edit("not an object", |m| {
+        let s = &m["source"];
+        m["source"] = json!([s["vertices"], s["cells"], s["content_sha256"], s["name"]]);
+    });
     edit("number of vertices", |m| m["source"]["vertices"] = json!(15));
-    edit("hexadecimal", |m| m["source"]["content_sha256"] = json!("A".repeat(64)));
+    edit("do not have the stated", |m| m["source"]["content_sha256"] = json!("A".repeat(64)));
     edit("do not have the stated", |m| m["source"]["content_sha256"] = json!("a".repeat(64)));
     let repeated = with_entry("manifest.json", |text| replace(text, b"\"version\": 1", b"\"version\":2,\"version\":1"));
     assert_unreadable(&repeated, "repeats");
+    let inside =
+        with_entry("manifest.json", |text| replace(text, b"\"options\": {}", b"\"options\": {\"a\":1,\"a\":1}"));
+    assert_unreadable(&inside, "repeats");
     let padded = with_entry("manifest.json", |text| [text, &vec![b' '; 1 << 20]].concat());
     assert_unreadable(&padded, "1 MiB");
     assert_unreadable(&with_entry("manifest.json", |_| vec![b'['; 200_000]), "not JSON");
     assert_unreadable(&with_entry("manifest.json", |_| b"\xff".to_vec()), "not JSON");
+    let (_, mut disk) = all_maps().swap_remove(6);
+    disk.manifest["centre"] = json!([disk.manifest["centre"]["cell"], 1]);
+    assert_unreadable(&disk.bytes(), "not an object");
     for length in [0u64, 1 << 32] {
         let (_, mut disk) = all_maps().swap_remove(6);
         disk.manifest["centre"]["length"] = json!(length);
-        assert_unreadable(&disk.bytes(), "length from 1");
+        assert_unreadable(&disk.bytes(), "nonzero u32");
     }
 }
