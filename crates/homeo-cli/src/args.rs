@@ -87,6 +87,9 @@ pub struct InfoArgs {
     /// Look for triangles that meet where they should not (always done where a ball is to be decided)
     #[arg(long)]
     pub intersections: bool,
+    /// First merge vertices of a mesh at exactly the same point, as `map --weld` does
+    #[arg(long)]
+    pub weld: bool,
 }
 
 #[derive(Debug, Args)]
@@ -96,7 +99,8 @@ pub struct InfoArgs {
 
 The certificate is checked on the bytes that were written; only then do they get their name.
 --regions takes {\"corners\": [a, b, c, d]} for the square, {\"source\": [[a, b, c], ...],
-\"sink\": [...]} for the cube, {\"centre\": cell} for disk and ball; numbers count from 0.")]
+\"sink\": [...]} for the cube, {\"centre\": cell} for disk and ball; numbers count from 0,
+those of vertices after --weld.")]
 pub struct MapArgs {
     /// A surface that is a disk, or a tetrahedral mesh that is a ball
     #[arg(value_name = "MESH")]
@@ -125,6 +129,9 @@ pub struct MapArgs {
     /// Sweeps of smoothing
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub smoothing: usize,
+    /// Merge vertices at exactly the same point into the first of them (reported)
+    #[arg(long)]
+    pub weld: bool,
     /// Cut polygons of more than three corners into triangles
     #[arg(long)]
     pub triangulate: bool,
@@ -174,6 +181,9 @@ pub struct VerifyArgs {
     /// Also require that the map is about this very mesh
     #[arg(long, value_name = "MESH")]
     pub source: Option<PathBuf>,
+    /// Merge vertices of that mesh as `map --weld` does
+    #[arg(long, requires = "source")]
+    pub weld: bool,
     /// Cut the polygons of that mesh as `map --triangulate` does
     #[arg(long, requires = "source")]
     pub triangulate: bool,

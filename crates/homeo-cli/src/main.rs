@@ -22,6 +22,7 @@ mod sampled;
 mod session;
 mod text;
 mod verify;
+mod welded;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;

@@ -4,17 +4,19 @@ use std::path::Path;
 
 use homeo::input::SourceMesh;
 use homeo::progress::Progress;
-use homeo_core::io::{Attribute, Element, MeshFile, ReadError, Values, read_mesh};
+use homeo_core::io::{Attribute, Element, MeshFile, ReadError, Values, WeldReport, read_mesh};
 use homeo_core::mesh::{CellId, SimplicialComplex, TetrahedronComplex, TriangleComplex};
 use homeo_core::predicate::{Sign, orient3d};
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, Result};
 use crate::session::Session;
+use crate::welded;
 
 /// Changes that the user asks for.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Requested {
+    pub weld: bool,
     pub triangulate: bool,
     pub orient: bool,
 }
@@ -31,6 +33,8 @@ pub struct MeshInput {
     pub polygon_count: usize,
     /// What was changed on request, one sentence each.
     pub changes: Vec<String>,
+    /// Which vertices were merged, where that was asked for.
+    pub welded: Option<WeldReport>,
 }
 
 /// The cells of highest dimension.
@@ -59,14 +63,16 @@ pub fn unreadable(error: &ReadError) -> Failure {
 }
 
 impl MeshInput {
-    fn new(file: MeshFile, requested: Requested) -> Result<Self> {
+    fn new(mut file: MeshFile, requested: Requested) -> Result<Self> {
+        // Comes first: the other changes depend on which vertices elements have in common.
+        let welded = requested.weld.then(|| file.weld());
         let is_volume = file.is_volume();
         let larger: Vec<u32> = if is_volume {
             Vec::new()
         } else {
             (0..file.polygons.len()).filter(|&p| file.polygons.polygon(p).len() != 3).map(|p| p as u32).collect()
         };
-        let mut changes = Vec::new();
+        let mut changes = welded.as_ref().map_or_else(Vec::new, welded::sentences);
         let mut file = if larger.is_empty() { file } else { file.triangulated().mesh };
         if requested.triangulate && !larger.is_empty() {
             changes.push(format!("{} polygons were cut into triangles", larger.len()));
@@ -76,7 +82,8 @@ impl MeshInput {
             changes.push(format!("{turned} {} were turned", if is_volume { "tetrahedra" } else { "triangles" }));
         }
         let cells = cells_of(&file)?;
-        Ok(Self { cells, polygon_count: larger.len(), polygons: larger.into_iter().take(10).collect(), changes, file })
+        let polygon_count = larger.len();
+        Ok(Self { cells, polygon_count, polygons: larger.into_iter().take(10).collect(), changes, welded, file })
     }
 
     /// The `input` field of JSON objects.
@@ -88,6 +95,9 @@ impl MeshInput {
         }
         if self.polygon_count > 0 {
             described["polygons_not_triangles"] = json!(self.polygon_count);
+        }
+        if let Some(report) = &self.welded {
+            described["welded"] = welded::described(report);
         }
         if !self.changes.is_empty() {
             described["changes"] = json!(self.changes);

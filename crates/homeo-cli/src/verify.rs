@@ -4,7 +4,7 @@ use std::path::Path;
 
 use homeo::progress::Progress;
 use homeo_verify::{Claim, SourceMatch, Verdict, compare_source, verify_bytes};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::answer::Answer;
 use crate::args::VerifyArgs;
@@ -28,34 +28,42 @@ pub fn run(session: &Session, options: &VerifyArgs) -> Result<Answer> {
         Verdict::Undecided(obstacle) => return Err(proof::undecided(&obstacle)),
     };
     session.check()?;
+    let mut source = None;
     if let Some(mesh) = &options.source {
-        let requested = Requested { triangulate: options.triangulate, orient: options.orient };
-        compare(session, &bytes, mesh, requested)?;
+        let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
+        source = Some(compare(session, &bytes, mesh, requested)?);
     }
     session.fact("input", described(&claim, &options.map));
     let fields = json!({
         "certificate": proof::claim_json(&claim),
-        "source": options.source.as_ref().map(|path| json!({"path": path.display().to_string(), "same": true})),
+        "source": source,
     });
     Ok(Answer::new(fields, words(&claim, options)))
 }
 
-fn compare(session: &Session, bytes: &[u8], path: &Path, requested: Requested) -> Result<()> {
+/// Says what the mesh is, as the field `source` has it; a mesh that the map is not about is a failure.
+fn compare(session: &Session, bytes: &[u8], path: &Path, requested: Requested) -> Result<Value> {
     let mesh = mesh_input::read(session, path, requested)?;
+    mesh.changes.iter().for_each(|change| session.display().note(change));
+    let source = |same: bool| {
+        let mut source = mesh.described(path);
+        source["same"] = json!(same);
+        source
+    };
     let (cells, size) = mesh.flat_cells();
     match compare_source(bytes, &mesh.file.positions, &cells, size) {
-        Ok(SourceMatch::Same) => Ok(()),
+        Ok(SourceMatch::Same) => Ok(source(true)),
         Ok(SourceMatch::Different(what)) => Err(Failure::input(
             "other-source",
             format!("the certificate holds, but the map is not about {}: {what}", path.display()),
         )
-        .with("source", json!({"path": path.display().to_string(), "same": false}))),
+        .with("source", source(false))),
         Err(error) => Err(Failure::bug(format!("a map that was certified became unreadable: {error}"))),
     }
 }
 
 /// The counts of the source are among what was checked.
-fn described(claim: &Claim, path: &Path) -> serde_json::Value {
+fn described(claim: &Claim, path: &Path) -> Value {
     let count = |what: &str| claim.checked.iter().find(|(name, _)| name.starts_with(what)).map(|&(_, n)| n);
     let cells = if matches!(claim.target.as_str(), "square" | "disk") { "triangles" } else { "tetrahedra" };
     json!({"path": path.display().to_string(), "vertices": count("source vertices"), cells: count("source cells")})
@@ -68,7 +76,11 @@ fn words(claim: &Claim, options: &VerifyArgs) -> String {
     }
     text.push_str(&format!("\nsource  sha256 {}\n", claim.source_sha256));
     if let Some(path) = &options.source {
-        text.push_str(&format!("        bit for bit the mesh of {}\n", path.display()));
+        let changed =
+            [(options.weld, " --weld"), (options.triangulate, " --triangulate"), (options.orient, " --orient")];
+        let asked: String = changed.iter().filter(|(is_asked, _)| *is_asked).map(|(_, option)| *option).collect();
+        let after = if asked.is_empty() { asked } else { format!(", after{asked}") };
+        text.push_str(&format!("        bit for bit the mesh of {}{after}\n", path.display()));
     }
     text.push_str("\nlimits\n");
     for limit in &claim.limits {

@@ -17,7 +17,8 @@ use crate::text::{Lines, counted, yes_no};
 
 /// Describes a mesh.
 pub fn describe(session: &Session, options: &InfoArgs) -> Result<Answer> {
-    let mesh = mesh_input::read(session, &options.input, Requested::default())?;
+    let requested = Requested { weld: options.weld, ..Requested::default() };
+    let mesh = mesh_input::read(session, &options.input, requested)?;
     session.stage("check");
     let look = if options.intersections { Intersections::Find } else { Intersections::WhereNeeded };
     let look = Options { intersections: look };
@@ -37,8 +38,8 @@ pub fn describe(session: &Session, options: &InfoArgs) -> Result<Answer> {
     let mut violations: Vec<Value> = fields["violations"].as_array().cloned().unwrap_or_default();
     violations.splice(0..0, polygon_violation(&mesh));
     text = format!("{}: {text}{}", options.input.display(), violations_text(&violations));
-    for loss in &mesh.file.losses {
-        text.push_str(&format!("note: {loss}\n"));
+    for note in mesh.changes.iter().chain(&mesh.file.losses) {
+        text.push_str(&format!("note: {note}\n"));
     }
     fields["violations"] = Value::Array(violations);
     Ok(Answer::new(fields, text))

@@ -40,7 +40,7 @@ pub fn run(session: &Session, options: &MapArgs, outputs: &mut Outputs) -> Resul
         regions,
         ..FoliationParams::default()
     };
-    let requested = Requested { triangulate: options.triangulate, orient: options.orient };
+    let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
     let mesh = mesh_input::read(session, &options.input, requested)?;
     for note in mesh.changes.iter().chain(&mesh.file.losses) {
         session.display().note(note);
@@ -162,8 +162,8 @@ fn provenance(options: &MapArgs, params: &FoliationParams) -> Provenance {
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
             "seed": params.seed, "refinements": params.refinements, "restarts": params.restarts,
-            "smoothing": params.smoothing_sweeps, "triangulate": options.triangulate, "orient": options.orient,
-            "regions": options.regions.is_some(),
+            "smoothing": params.smoothing_sweeps, "weld": options.weld, "triangulate": options.triangulate,
+            "orient": options.orient, "regions": options.regions.is_some(),
         }),
     }
 }

@@ -13,6 +13,9 @@ use crate::session::Session;
 /// Faults that do not touch the complex itself: said, but no reason to refuse.
 const HARMLESS: [&str; 1] = ["self-intersection"];
 
+/// No reason to refuse, but often the cause of one.
+const HINTS: [&str; 1] = ["coincident-vertices"];
+
 /// Refuses a mesh that is not what the target needs.
 ///
 /// # Errors
@@ -42,19 +45,26 @@ pub fn unfit(session: &Session, mesh: &MeshInput, target: Target, triangulate: b
         (cells, _) => return Err(wrong_dimension(cells, target)),
     };
     let matters = |v: &&Violation| v.severity == Severity::Error && !HARMLESS.contains(&v.code);
-    for violation in violations.iter().filter(|v| !matters(v) && v.severity != Severity::Info) {
-        session.display().note(&format!("{}: {}", violation.code, violation.message));
-    }
     let faults: Vec<&Violation> = violations.iter().filter(matters).collect();
-    if faults.is_empty() && shape.is_none() {
+    let is_fit = faults.is_empty() && shape.is_none();
+    let is_hint = |v: &&Violation| !is_fit && HINTS.contains(&v.code);
+    for violation in violations.iter().filter(|v| !matters(v) && !is_hint(v) && v.severity != Severity::Info) {
+        session.display().note(&sentence(violation));
+    }
+    if is_fit {
         return Ok(());
     }
     let needed = if target.dimension() == 2 { "disk" } else { "ball" };
     let mut message = format!("the mesh is not a {needed} that can be mapped onto the {target}:");
-    let said = faults.iter().map(|v| format!("{}: {}", v.code, v.message)).chain(shape.iter().cloned());
+    let hints = violations.iter().filter(is_hint).map(sentence);
+    let said = faults.iter().copied().map(sentence).chain(shape.iter().cloned()).chain(hints);
     said.for_each(|line| message.push_str(&format!("\n  {line}")));
     let code = faults.first().map_or(if needed == "disk" { "not-a-disk" } else { "not-a-ball" }, |v| v.code);
     Err(Failure::input(code, message).with("violations", json!(violations)).with("needed", needed))
+}
+
+fn sentence(violation: &Violation) -> String {
+    format!("{}: {}", violation.code, violation.message)
 }
 
 /// The sentence on polygons that are no triangles.

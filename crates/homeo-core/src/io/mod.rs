@@ -4,6 +4,8 @@
 //! Broken, truncated or non-finite files give a [`ReadError`] with the line or byte; memory stays
 //! within a small multiple of the file's size whatever its header announces.
 //!
+//! [`MeshFile::triangulated`] and [`MeshFile::weld`] change a mesh on request, and say how.
+//!
 //! [`write_mesh`] writes numbers so that they read back bit for bit, and reports in a
 //! [`WriteReport`] what the format could not hold.
 
@@ -37,6 +39,7 @@ mod vtk_write;
 mod vtu;
 mod vtu_blocks;
 mod vtu_write;
+mod weld;
 mod write;
 mod xml;
 
@@ -44,6 +47,7 @@ pub use error::{Place, ReadError, WriteError};
 pub use mesh_file::{Attribute, Element, MeshFile, PhysicalName, PolygonList, Values};
 pub use read::{Format, read_mesh, read_mesh_bytes};
 pub use triangulate::Triangulated;
+pub use weld::{DifferingAttribute, WeldReport};
 #[cfg(test)]
 mod tests;
 

@@ -147,8 +147,8 @@ pub(super) fn report_components(components: usize, violations: &mut Violations) 
 
 pub(super) fn report_coincident(pairs: &[[u32; 2]], violations: &mut Violations) {
     let vertices: Vec<_> = pairs.iter().map(|&[_, v]| [v]).collect();
-    let advice = "at exactly the same point as an earlier vertex; merge them (`--weld`) unless the mesh is cut there on \
-                  purpose";
+    let advice = "at exactly the same point as an earlier vertex; merge them (`--weld` does it where cells use both) \
+                  unless the mesh is cut there on purpose";
     violations.add("coincident-vertices", Severity::Warning, ElementKind::Vertex, &vertices, advice);
 }
 

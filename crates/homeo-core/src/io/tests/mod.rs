@@ -6,3 +6,4 @@ mod errors;
 mod formats;
 mod round_trip;
 mod samples;
+mod weld;
