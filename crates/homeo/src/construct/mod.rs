@@ -1,3 +1,4 @@
 //! Constructions of maps, one folder each.
 
 pub mod foliation;
+pub mod shell;

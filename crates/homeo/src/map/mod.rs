@@ -13,6 +13,7 @@ mod locate;
 mod nearest;
 mod sample;
 mod section;
+mod shell;
 mod steps;
 mod target;
 
@@ -20,6 +21,7 @@ pub use foliation::{Centre, DEFAULT_ACCURACY, Foliation, FoliationParts};
 pub(crate) use nearest::is_flat;
 pub use sample::{LeafPolyline, distortions};
 pub use section::Section;
+pub use shell::{Shell, ShellEvaluationError, ShellParts, ShellPoint, SurfacePoint};
 pub use target::{BALL_CORNERS, Target, UnknownTarget};
 
 use homeo_core::number::Rational;

@@ -1,0 +1,288 @@
+//! A shell under construction: columns, prisms, and which source triangles each prism may contain.
+
+use homeo_core::predicate::{Sign, crossing_sign, orient3d, share_area, triangles_meet, triangles_meet_beyond_vertex};
+use homeo_core::spatial::{Aabb, Tree};
+
+use super::directions::{minus, triangles_around};
+use crate::input::SourceMesh;
+use crate::map::ShellParts;
+
+type Point = [f64; 3];
+
+/// Bottom, middle and top of a column.
+pub(super) type Column = [Point; 3];
+
+/// Lower and upper slab, as the levels of their low and high points.
+const SLABS: [[usize; 2]; 2] = [[0, 1], [1, 2]];
+
+/// The source surface, as the checks need it.
+pub(super) struct Surface {
+    corners: Vec<[Point; 3]>,
+    tree: Tree,
+}
+
+impl Surface {
+    pub fn new(source: &SourceMesh<3>) -> Self {
+        let corner = |v: &homeo_core::mesh::VertexId| source.positions()[v.index()];
+        let corners: Vec<[Point; 3]> =
+            source.complex().cells().iter().map(|cell| std::array::from_fn(|k| corner(&cell[k]))).collect();
+        let boxes: Vec<Aabb> = corners.iter().map(|triangle| Aabb::of(triangle)).collect();
+        Self { tree: Tree::new(&boxes), corners }
+    }
+
+    /// L3: whether the surface stays off a triangle of top or bottom, but for pinched points.
+    fn is_clear_of(&self, cap: [Point; 3], pinched: Option<usize>) -> bool {
+        let apart = |triangle: [Point; 3]| {
+            let apex = pinched.map(|k| cap[k]);
+            match (pinched, triangle.iter().position(|p| Some(*p) == apex)) {
+                (Some(k), Some(l)) => !triangles_meet_beyond_vertex(
+                    cap[k],
+                    [cap[(k + 1) % 3], cap[(k + 2) % 3]],
+                    [triangle[(l + 1) % 3], triangle[(l + 2) % 3]],
+                ),
+                _ => !triangles_meet(cap, triangle),
+            }
+        };
+        let mut is_clear = true;
+        self.tree.query_box(&Aabb::of(&cap), |t| is_clear = is_clear && apart(self.corners[t]));
+        is_clear
+    }
+}
+
+/// See the module's documentation.
+pub(super) struct Layer {
+    pub surface: Surface,
+    pub columns: Vec<Column>,
+    pub prisms: Vec<[u32; 3]>,
+    /// Whether each prism still exists.
+    pub exists: Vec<bool>,
+    /// The prisms at each column.
+    pub around: Vec<Vec<u32>>,
+    /// For each prism all source triangles with which it has an area in common, and perhaps others near it, ascending.
+    contents: Vec<Vec<u32>>,
+}
+
+/// Which of the theorem's hypotheses fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Failure {
+    /// L2: a tetrahedron is not positive.
+    Volume,
+    /// L3: the surface meets top or bottom.
+    Cap,
+    /// L4: a pillar crosses a triangle the wrong way.
+    Crossing,
+}
+
+impl Layer {
+    /// The layer of the given columns over the triangles of the source, nothing checked yet.
+    pub fn new(source: &SourceMesh<3>, columns: Vec<Column>) -> Self {
+        let prisms: Vec<[u32; 3]> = source.complex().cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
+        Self {
+            surface: Surface::new(source),
+            columns,
+            exists: vec![true; prisms.len()],
+            around: triangles_around(source.complex()),
+            contents: vec![Vec::new(); prisms.len()],
+            prisms,
+        }
+    }
+
+    pub fn is_pinched(&self, column: u32) -> bool {
+        let [bottom, middle, top] = self.columns[column as usize];
+        bottom == middle && middle == top
+    }
+
+    fn prism(&self, corners: [u32; 3]) -> Prism {
+        let columns = corners.map(|v| self.columns[v as usize]);
+        Prism { columns, pinched: corners.map(|v| self.is_pinched(v)) }
+    }
+
+    /// Finds the contents of a prism among all source triangles and checks everything (L2 to L4).
+    pub fn fill(&mut self, prism: u32) -> Result<(), Failure> {
+        let body = self.prism(self.prisms[prism as usize]);
+        body.check(&self.surface)?;
+        let mut near = Vec::new();
+        self.surface.tree.query_box(&Aabb::of(body.columns.as_flattened()), |t| near.push(t as u32));
+        near.sort_unstable();
+        self.contents[prism as usize] = body.contents(&self.surface, &near)?;
+        Ok(())
+    }
+
+    /// Replaces prisms by others over the same part of the surface if the new ones satisfy L2 to L4; `columns` may have
+    /// been changed before. Their common side walls must be as before, so what the old ones held the new ones hold.
+    /// Returns the new prisms' numbers: as many of the old ones as are needed.
+    pub fn replace(&mut self, old: &[u32], new: &[[u32; 3]]) -> Result<(), Failure> {
+        debug_assert!(new.len() <= old.len());
+        let bodies: Vec<Prism> = new.iter().map(|&corners| self.prism(corners)).collect();
+        bodies.iter().try_for_each(Prism::check_volumes)?;
+        let mut held: Vec<u32> = old.iter().flat_map(|&p| self.contents[p as usize].iter().copied()).collect();
+        held.sort_unstable();
+        held.dedup();
+        let contents: Vec<Vec<u32>> =
+            bodies.iter().map(|body| body.contents(&self.surface, &held)).collect::<Result<_, _>>()?;
+        bodies.iter().try_for_each(|body| body.check_caps(&self.surface))?;
+        for &prism in old {
+            for column in self.prisms[prism as usize] {
+                self.around[column as usize].retain(|&other| other != prism);
+            }
+            self.exists[prism as usize] = false;
+            self.contents[prism as usize] = Vec::new();
+        }
+        for ((&prism, &corners), contents) in old.iter().zip(new).zip(contents) {
+            self.exists[prism as usize] = true;
+            self.prisms[prism as usize] = corners;
+            self.contents[prism as usize] = contents;
+            corners.iter().for_each(|&column| self.around[column as usize].push(prism));
+        }
+        Ok(())
+    }
+
+    /// Columns that share a prism with the given one, ascending.
+    pub fn neighbours(&self, column: u32) -> Vec<u32> {
+        let corners = self.around[column as usize].iter().flat_map(|&p| self.prisms[p as usize]);
+        let mut found: Vec<u32> = corners.filter(|&other| other != column).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// How many prisms there are.
+    pub fn count(&self) -> usize {
+        self.exists.iter().filter(|exists| **exists).count()
+    }
+
+    /// The finished shell, with columns numbered anew.
+    pub fn into_parts(self) -> ShellParts {
+        let mut number = vec![u32::MAX; self.columns.len()];
+        let mut parts = ShellParts::default();
+        for (corners, _) in self.prisms.iter().zip(&self.exists).filter(|(_, exists)| **exists) {
+            for &column in corners {
+                if number[column as usize] == u32::MAX {
+                    number[column as usize] = parts.middle.len() as u32;
+                    let [bottom, middle, top] = self.columns[column as usize];
+                    parts.bottom.push(bottom);
+                    parts.middle.push(middle);
+                    parts.top.push(top);
+                }
+            }
+            parts.prisms.push(corners.map(|column| number[column as usize]));
+        }
+        parts
+    }
+}
+
+/// A prism with its points.
+struct Prism {
+    columns: [Column; 3],
+    pinched: [bool; 3],
+}
+
+impl Prism {
+    fn check(&self, surface: &Surface) -> Result<(), Failure> {
+        self.check_volumes()?;
+        self.check_caps(surface)
+    }
+
+    /// L2.
+    fn check_volumes(&self) -> Result<(), Failure> {
+        let is_positive = |[a, b, c, d]: [Point; 4]| orient3d(a, b, c, d) == Sign::Positive;
+        let pinched = self.pinched.iter().filter(|pinched| **pinched).count();
+        let holds = pinched <= 1 && SLABS.iter().all(|&slab| self.tetrahedra(slab).all(is_positive));
+        if holds { Ok(()) } else { Err(Failure::Volume) }
+    }
+
+    /// L3.
+    fn check_caps(&self, surface: &Surface) -> Result<(), Failure> {
+        let pinched = self.pinched.iter().position(|pinched| *pinched);
+        let holds = [0, 2].iter().all(|&level| surface.is_clear_of(self.columns.map(|c| c[level]), pinched));
+        if holds { Ok(()) } else { Err(Failure::Cap) }
+    }
+
+    /// All tetrahedra of a slab in any order of the columns: a pillar and a point of each other column.
+    fn tetrahedra(&self, [low, high]: [usize; 2]) -> impl Iterator<Item = [Point; 4]> + '_ {
+        (0..3).filter(|&i| !self.pinched[i]).flat_map(move |i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let [pillar, second, third] = [i, j, k].map(|column| self.columns[column]);
+            // A pinched column has one point.
+            let levels = move |column: usize| [low, high].into_iter().take(2 - usize::from(self.pinched[column]));
+            levels(j).flat_map(move |x| levels(k).map(move |y| [pillar[low], pillar[high], second[x], third[y]]))
+        })
+    }
+
+    /// The source triangles among `near` that may have an area in common with the prism; L4 for those that have.
+    fn contents(&self, surface: &Surface, near: &[u32]) -> Result<Vec<u32>, Failure> {
+        let hull = Aabb::of(self.columns.as_flattened());
+        let walls: [Vec<[Point; 3]>; 2] = [self.outer_walls(SLABS[0]), self.outer_walls(SLABS[1])];
+        let mut contents = Vec::new();
+        for &t in near {
+            let triangle = surface.corners[t as usize];
+            if !hull.meets(&Aabb::of(&triangle)) {
+                continue;
+            }
+            let mut is_inside = false;
+            for (slab, walls) in SLABS.into_iter().zip(&walls) {
+                if walls.iter().any(|wall| is_outside(*wall, triangle)) {
+                    continue;
+                }
+                is_inside = true;
+                if !self.is_crossed(slab, triangle) && self.tetrahedra(slab).any(|cell| share_area(cell, triangle)) {
+                    return Err(Failure::Crossing);
+                }
+            }
+            if is_inside {
+                contents.push(t);
+            }
+        }
+        Ok(contents)
+    }
+
+    /// Whether all pillars of a slab cross a triangle in the positive sense.
+    fn is_crossed(&self, [low, high]: [usize; 2], triangle: [Point; 3]) -> bool {
+        let crosses = |column: &Column| crossing_sign(triangle, [column[low], column[high]]) == Sign::Positive;
+        (0..3).filter(|&i| !self.pinched[i]).all(|i| crosses(&self.columns[i]))
+    }
+
+    /// Planes through sides of a slab with all of it on their negative side.
+    fn outer_walls(&self, [low, high]: [usize; 2]) -> Vec<[Point; 3]> {
+        let points: Vec<Point> = self.columns.iter().flat_map(|column| [column[low], column[high]]).collect();
+        let mut walls = Vec::with_capacity(12);
+        for i in 0..3 {
+            let (a, b) = (self.columns[i], self.columns[(i + 1) % 3]);
+            // Seen from outside, low points of a and b and then high ones run counter-clockwise.
+            for wall in [
+                [a[low], b[low], b[high]],
+                [a[low], b[low], a[high]],
+                [a[low], b[high], a[high]],
+                [b[low], b[high], a[high]],
+            ] {
+                let is_supporting = points.iter().all(|&p| orient3d(wall[0], wall[1], wall[2], p) != Sign::Positive);
+                let is_plane = points.iter().any(|&p| orient3d(wall[0], wall[1], wall[2], p) == Sign::Negative);
+                if is_supporting && is_plane {
+                    walls.push(wall);
+                }
+            }
+        }
+        walls
+    }
+}
+
+/// Whether a triangle lies on the closed positive side of a plane, and not all in it.
+fn is_outside([a, b, c]: [Point; 3], triangle: [Point; 3]) -> bool {
+    let mut is_off = false;
+    for p in triangle {
+        match orient3d(a, b, c, p) {
+            Sign::Negative => return false,
+            Sign::Zero => {}
+            Sign::Positive => is_off = true,
+        }
+    }
+    is_off
+}
+
+/// Twice the area of a triangle, and the sum of its squared sides.
+pub(super) fn area_and_sides([a, b, c]: [Point; 3]) -> (f64, f64) {
+    let (u, v, w) = (minus(b, a), minus(c, a), minus(c, b));
+    let square = |x: Point| x.iter().map(|c| c * c).sum::<f64>();
+    let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    (square(cross).sqrt(), square(u) + square(v) + square(w))
+}

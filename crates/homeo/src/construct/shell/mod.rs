@@ -1,0 +1,223 @@
+//! A prismatic shell round a surface, as the domain of a bijective projection.
+//!
+//! Theorem:     with positive prisms, the surface between bottom and top and crossed by all pillars in one sense, and one
+//!              point with one preimage and one fibre that meets it once per component, the projection is a homeomorphism.
+//! Source:      Jiang, Schneider, Zorin, Panozzo 2020 (doi 10.1145/3414685.3417769), sections 3.1 to 3.4.
+//! Differences: no beveling: triangles that only touch a prism do not count, which is decided exactly; columns keep
+//!              vertices of the source as their middles; directions by the point of a convex hull nearest to the origin.
+//! Arithmetic:  every accepted operation is decided by exact signs; directions, lengths and energies only guide.
+//! Cost:        about proportional to the triangles, times what a prism comes to hold.
+//! Fails when:  the surface is open or crosses itself, or two singular vertices are neighbours -> [`ShellError`].
+//! See:         `docs/theory/shells.md`.
+
+mod directions;
+mod layer;
+mod simplify;
+
+use crate::input::SourceMesh;
+use crate::map::Shell;
+use crate::progress::Progress;
+
+use directions::extrusion_directions;
+use layer::{Column, Failure, Layer};
+
+/// What shell is wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShellParams {
+    /// Largest distance of top and bottom from the middle, relative to the longest side of the surface's box.
+    pub thickness: f64,
+    /// Stop when no more than this many prisms are left; 0 for as few as possible.
+    pub prisms: usize,
+    /// Rounds of simplification at most; with 0 the middle surface is the source itself.
+    pub rounds: usize,
+}
+
+impl Default for ShellParams {
+    fn default() -> Self {
+        Self { thickness: 0.1, prisms: 0, rounds: 30 }
+    }
+}
+
+/// What happened during a construction.
+#[derive(Clone, Debug, Default)]
+pub struct ShellInfo {
+    /// Vertices without an extrusion direction, where the shell has no thickness.
+    pub pinched: usize,
+    /// Prisms of the first shell.
+    pub first_prisms: usize,
+    /// Prisms of the last one.
+    pub prisms: usize,
+    /// Columns that were taken away.
+    pub collapses: usize,
+    /// Edges of the middle surface that were flipped.
+    pub flips: usize,
+    /// Rounds of simplification.
+    pub rounds: usize,
+}
+
+/// Why no shell was made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ShellError {
+    /// The thickness is no positive number.
+    #[error("the thickness has to be a positive number")]
+    Thickness,
+    /// The surface has boundary edges.
+    #[error("the surface has a boundary, and shells of open surfaces are not made yet: close its {0} boundary edges")]
+    Open(usize),
+    /// No positive thickness was found at a triangle.
+    #[error(
+        "no shell was found at triangle {triangle}: {reason}; split the triangles there, or remove self-intersections"
+    )]
+    Stuck {
+        /// A source triangle.
+        triangle: u32,
+        /// What stays wrong however thin the shell is.
+        reason: &'static str,
+    },
+    /// Stopped from outside (time limit, interrupt).
+    #[error("stopped before a shell was found")]
+    Cancelled,
+}
+
+/// Halvings of a column before it is given up.
+const MOST_HALVINGS: u32 = 60;
+
+/// Builds a shell round a closed surface.
+///
+/// # Preconditions
+/// The triangles form a closed oriented surface by their links, none has area zero, and it does not cross itself.
+///
+/// # Errors
+/// See [`ShellError`].
+pub fn build(
+    source: &SourceMesh<3>,
+    params: &ShellParams,
+    progress: &dyn Progress,
+) -> Result<(Shell, ShellInfo), ShellError> {
+    if !(params.thickness > 0.0 && params.thickness.is_finite()) {
+        return Err(ShellError::Thickness);
+    }
+    let boundary = source.complex().adjacency().map_or(0, |adjacency| adjacency.boundary_facets().count());
+    if boundary > 0 {
+        return Err(ShellError::Open(boundary));
+    }
+    let target = params.thickness * longest_side(source.positions());
+    progress.stage("directions");
+    let directions = extrusion_directions(source.complex(), source.positions());
+    progress.stage("thickness");
+    let mut layer = first_layer(source, &directions, target, progress)?;
+    let mut info = ShellInfo {
+        pinched: (0..layer.columns.len() as u32)
+            .filter(|&v| !layer.around[v as usize].is_empty() && layer.is_pinched(v))
+            .count(),
+        first_prisms: layer.count(),
+        ..ShellInfo::default()
+    };
+    progress.stage("simplify");
+    simplify(&mut layer, params, target, progress, &mut info)?;
+    info.prisms = layer.count();
+    Ok((Shell::from_parts(source.clone(), layer.into_parts()), info))
+}
+
+fn longest_side(positions: &[[f64; 3]]) -> f64 {
+    let hull = homeo_core::spatial::Aabb::of(positions);
+    (0..3).map(|axis| hull.high[axis] - hull.low[axis]).fold(0.0, f64::max)
+}
+
+/// The shell whose middle is the source: columns as long as the edges round them at first, and halved where the
+/// theorem's hypotheses fail.
+fn first_layer(
+    source: &SourceMesh<3>,
+    directions: &[Option<[f64; 3]>],
+    target: f64,
+    progress: &dyn Progress,
+) -> Result<Layer, ShellError> {
+    let lengths = first_lengths(source, target);
+    let column = |v: usize, reach: [f64; 2]| -> Column {
+        let middle = source.positions()[v];
+        let moved = |by: f64| match directions[v] {
+            Some(direction) => [0, 1, 2].map(|axis| middle[axis] + by * direction[axis]),
+            None => middle,
+        };
+        [moved(-reach[0]), middle, moved(reach[1])]
+    };
+    let columns = (0..directions.len()).map(|v| column(v, [lengths[v]; 2])).collect();
+    let mut reaches: Vec<[f64; 2]> = lengths.iter().map(|&length| [length; 2]).collect();
+    let mut halvings = vec![0u32; directions.len()];
+    let mut layer = Layer::new(source, columns);
+    let mut waiting: Vec<u32> = (0..layer.prisms.len() as u32).rev().collect();
+    let mut is_waiting = vec![true; waiting.len()];
+    while let Some(prism) = waiting.pop() {
+        is_waiting[prism as usize] = false;
+        let Err(failure) = layer.fill(prism) else { continue };
+        if progress.is_cancelled() {
+            return Err(ShellError::Cancelled);
+        }
+        let corners = layer.prisms[prism as usize];
+        for &v in &corners {
+            let v = v as usize;
+            halvings[v] += 1;
+            if halvings[v] > MOST_HALVINGS {
+                return Err(ShellError::Stuck { triangle: prism, reason: reason(failure) });
+            }
+            reaches[v] = reaches[v].map(|reach| reach / 2.0);
+            layer.columns[v] = column(v, reaches[v]);
+        }
+        for &touched in corners.iter().flat_map(|&v| &layer.around[v as usize]) {
+            if !is_waiting[touched as usize] {
+                is_waiting[touched as usize] = true;
+                waiting.push(touched);
+            }
+        }
+    }
+    Ok(layer)
+}
+
+fn reason(failure: Failure) -> &'static str {
+    match failure {
+        Failure::Volume => "its prism does not become positive, as where singular vertices are neighbours",
+        Failure::Cap => "the surface comes too close to itself",
+        Failure::Crossing => "a triangle near it is crossed the wrong way",
+    }
+}
+
+/// Half the mean length of the edges at each vertex, at most `target`.
+fn first_lengths(source: &SourceMesh<3>, target: f64) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); source.positions().len()];
+    for cell in source.complex().cells() {
+        for k in 0..3 {
+            let (v, w) = (cell[k].index(), cell[(k + 1) % 3].index());
+            let edge = directions::minus(source.positions()[v], source.positions()[w]);
+            let length = edge.iter().map(|x| x * x).sum::<f64>().sqrt();
+            for end in [v, w] {
+                sums[end] = (sums[end].0 + length, sums[end].1 + 1.0);
+            }
+        }
+    }
+    sums.into_iter().map(|(sum, count): (f64, f64)| (0.5 * sum / count.max(1.0)).min(target)).collect()
+}
+
+/// Rounds of flips, collapses and growth until they change little.
+fn simplify(
+    layer: &mut Layer,
+    params: &ShellParams,
+    target: f64,
+    progress: &dyn Progress,
+    info: &mut ShellInfo,
+) -> Result<(), ShellError> {
+    while info.rounds < params.rounds && layer.count() > params.prisms {
+        if progress.is_cancelled() {
+            // What there is, is valid.
+            return Ok(());
+        }
+        info.rounds += 1;
+        let before = layer.count();
+        info.flips += simplify::flip_edges(layer);
+        simplify::thicken(layer, target);
+        info.collapses += simplify::collapse_edges(layer, params.prisms);
+        if layer.count() as f64 > 0.999 * before as f64 && info.rounds > 3 {
+            break;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,152 @@
+//! Fewer prisms: collapses, flips and thicker columns, each accepted only if the shell stays valid.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::directions::minus;
+use super::layer::{Layer, area_and_sides};
+
+/// Middle triangles with a larger energy are not made, unless there were such before.
+const LARGEST_ENERGY: f64 = 30.0;
+
+/// The energy of a triangle: 2 for an equilateral one, without bound for flat ones (MIPS).
+fn energy(layer: &Layer, corners: [u32; 3]) -> f64 {
+    let (doubled_area, sides) = area_and_sides(corners.map(|v| layer.columns[v as usize][1]));
+    sides / (3f64.sqrt() * doubled_area)
+}
+
+fn worst_energy(layer: &Layer, prisms: impl Iterator<Item = [u32; 3]>) -> f64 {
+    prisms.map(|corners| energy(layer, corners)).fold(0.0, f64::max)
+}
+
+fn squared_length(layer: &Layer, a: u32, b: u32) -> f64 {
+    let edge = minus(layer.columns[a as usize][1], layer.columns[b as usize][1]);
+    edge.iter().map(|x| x * x).sum()
+}
+
+/// Collapses edges, the shortest first, until none can be or `enough` prisms are left. Returns how many were.
+pub(super) fn collapse_edges(layer: &mut Layer, enough: usize) -> usize {
+    let mut queue = BinaryHeap::new();
+    let push = |layer: &Layer, queue: &mut BinaryHeap<_>, a: u32, b: u32| {
+        let (a, b) = (a.min(b), a.max(b));
+        queue.push(Reverse((squared_length(layer, a, b).to_bits(), a, b)));
+    };
+    for column in 0..layer.columns.len() as u32 {
+        for other in layer.neighbours(column).into_iter().filter(|&other| other > column) {
+            push(layer, &mut queue, column, other);
+        }
+    }
+    let mut prisms = layer.count();
+    let mut collapsed = 0;
+    while let Some(Reverse((_, a, b))) = queue.pop() {
+        if prisms <= enough {
+            break;
+        }
+        let Some(kept) = [(a, b), (b, a)].into_iter().find(|&(gone, kept)| collapse(layer, gone, kept)) else {
+            continue;
+        };
+        let kept = kept.1;
+        collapsed += 1;
+        prisms -= 2;
+        for other in layer.neighbours(kept) {
+            push(layer, &mut queue, kept, other);
+        }
+    }
+    collapsed
+}
+
+/// Moves column `gone` into its neighbour `kept`, if the shell stays valid.
+fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
+    if layer.is_pinched(gone) || !is_link_fit(layer, gone, kept) {
+        return false;
+    }
+    let old = layer.around[gone as usize].clone();
+    let moved = |prism: &u32| layer.prisms[*prism as usize].map(|v| if v == gone { kept } else { v });
+    let is_kept = |prism: &&u32| !layer.prisms[**prism as usize].contains(&kept);
+    let new: Vec<[u32; 3]> = old.iter().filter(is_kept).map(moved).collect();
+    let before = worst_energy(layer, old.iter().map(|&p| layer.prisms[p as usize]));
+    if worst_energy(layer, new.iter().copied()) > before.max(LARGEST_ENERGY) {
+        return false;
+    }
+    layer.replace(&old, &new).is_ok()
+}
+
+/// The link condition: the two columns exist, and share just the two neighbours opposite their edge.
+fn is_link_fit(layer: &Layer, a: u32, b: u32) -> bool {
+    let (first, second) = (layer.neighbours(a), layer.neighbours(b));
+    let common: Vec<&u32> = first.iter().filter(|v| second.binary_search(v).is_ok()).collect();
+    // Of a tetrahedron nothing may be taken away.
+    first.binary_search(&b).is_ok() && common.len() == 2 && first.len() + second.len() > 6
+}
+
+/// Flips edges where that lowers the worse of the two energies. Returns how many were.
+pub(super) fn flip_edges(layer: &mut Layer) -> usize {
+    let mut flipped = 0;
+    for prism in 0..layer.prisms.len() as u32 {
+        for side in 0..3 {
+            flipped += usize::from(layer.exists[prism as usize] && flip(layer, prism, side));
+        }
+    }
+    flipped
+}
+
+fn flip(layer: &mut Layer, prism: u32, side: usize) -> bool {
+    let corners = layer.prisms[prism as usize];
+    let [a, b, c] = [side, (side + 1) % 3, (side + 2) % 3].map(|k| corners[k]);
+    let beyond = layer.around[a as usize]
+        .iter()
+        .copied()
+        .find(|&other| other != prism && layer.prisms[other as usize].contains(&b));
+    // Each edge from the prism with the smaller number.
+    let Some(other) = beyond.filter(|&other| other > prism) else { return false };
+    let Some(d) = layer.prisms[other as usize].into_iter().find(|&v| v != a && v != b) else { return false };
+    if layer.neighbours(c).binary_search(&d).is_ok()
+        || layer.around[a as usize].len() < 4
+        || layer.around[b as usize].len() < 4
+    {
+        return false;
+    }
+    let new = [[a, d, c], [d, b, c]];
+    let before = energy(layer, corners).max(energy(layer, layer.prisms[other as usize]));
+    worst_energy(layer, new.into_iter()) < 0.999 * before && layer.replace(&[prism, other], &new).is_ok()
+}
+
+/// Makes columns up to half as long again as their neighbours on average, at most `target` on either side.
+pub(super) fn thicken(layer: &mut Layer, target: f64) -> usize {
+    let mut grown = 0;
+    for column in 0..layer.columns.len() as u32 {
+        if layer.around[column as usize].is_empty() || layer.is_pinched(column) {
+            continue;
+        }
+        let neighbours = layer.neighbours(column);
+        for level in [0, 2] {
+            let average = neighbours.iter().map(|&v| reach(layer, v, level)).sum::<f64>() / neighbours.len() as f64;
+            let wanted = (1.5 * average).min(target);
+            let is_longer = wanted > 1.001 * reach(layer, column, level);
+            grown += usize::from(is_longer && stretch(layer, column, level, wanted));
+        }
+    }
+    grown
+}
+
+/// How far bottom or top is from the middle.
+fn reach(layer: &Layer, column: u32, level: usize) -> f64 {
+    let [.., middle, _] = layer.columns[column as usize];
+    let step = minus(layer.columns[column as usize][level], middle);
+    step.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Moves bottom or top along its pillar, if the shell stays valid.
+fn stretch(layer: &mut Layer, column: u32, level: usize, wanted: f64) -> bool {
+    let before = layer.columns[column as usize];
+    let factor = wanted / reach(layer, column, level);
+    let step = minus(before[level], before[1]);
+    layer.columns[column as usize][level] = [0, 1, 2].map(|axis| before[1][axis] + factor * step[axis]);
+    let prisms = layer.around[column as usize].clone();
+    let corners: Vec<[u32; 3]> = prisms.iter().map(|&p| layer.prisms[p as usize]).collect();
+    let is_valid = layer.replace(&prisms, &corners).is_ok();
+    if !is_valid {
+        layer.columns[column as usize] = before;
+    }
+    is_valid
+}
