@@ -186,10 +186,11 @@ impl Foliation<'_> {
             Target::Cube => (disk, annulus),
             Target::Disk => (circle, nothing),
             Target::Ball => (sphere, nothing),
+            Target::Shell => (nothing, nothing), // not for foliations
         };
         let expected = [("source region", end), ("sink region", end), ("parallel part", wall)];
         for (slots, (name, (components, euler, boundaries))) in regions.iter().zip(expected) {
-            let found = check_manifold(&self.complex.facet_complex(slots.iter().copied())?, name)?;
+            let found = check_manifold(&self.complex.facet_complex(slots.iter().copied())?, name, "8")?;
             let expected = Shape { components, euler, boundaries };
             let message = format!("the {name} has {found:?} instead of {expected:?}");
             check(found == expected, "8", &message, &[], &[])?;

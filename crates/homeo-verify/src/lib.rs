@@ -6,10 +6,12 @@
 //!
 //! 1. `archive`, `npy`, `manifest`, `map_file`: bytes to arrays, hostile input;
 //! 2. `complex`, `links`, `number`: neighbours, manifolds, exact signs;
-//! 3. `source` (rules S, 8), `subdivision` (R), `foliation` (1-6, 8), `section` (7), `piecewise_linear` (P, 7).
+//! 3. `source` (rules S, 8), `subdivision` (R), `foliation` (1-6, 8), `section` (7), `piecewise_linear` (P, 7);
+//! 4. `triangles`, `shell` (L1-L6, of `docs/theory/shells.md`).
 //!
 //! # Complexity
-//! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file.
+//! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file. For
+//! shells also the number of pairs, of a source triangle and a prism, whose boxes meet.
 
 mod archive;
 mod complex;
@@ -21,8 +23,10 @@ mod npy;
 mod number;
 mod piecewise_linear;
 mod section;
+mod shell;
 mod source;
 mod subdivision;
+mod triangles;
 mod verdict;
 
 pub use verdict::{Claim, Obstacle, Unreadable, Verdict, Witness};
@@ -118,6 +122,54 @@ pub fn compare_source(
 
 /// Applies every rule and puts the claim into words.
 fn check_map(map: &MapFile) -> Checked<Claim> {
+    let checked = check_rules(map)?;
+    let (kind, theorem) = match map.manifest.kind {
+        Kind::Foliation => ("foliation", "theorem on locally bipolar foliations, rules 1-8"),
+        Kind::PiecewiseLinear => ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P"),
+        Kind::Shell => ("shell", "theorem on shells, rules L1-L6"),
+    };
+    let (target, onto) = match map.manifest.target {
+        Target::Square => ("square", "square [0,1]^2"),
+        Target::Cube => ("cube", "cube [0,1]^3"),
+        Target::Disk => ("disk", "diamond |x| + |y| <= 1, and by a fixed homeomorphism onto the unit disk"),
+        Target::Ball => ("ball", "tetrahedron of the format, and by a fixed homeomorphism onto a round ball"),
+        Target::Shell => ("shell", "middle surface"),
+    };
+    let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
+    let mut statement = format!(
+        "The stored map is a homeomorphism from the complex of {vertices} vertices and {cells} cells onto the \
+         {onto} ({theorem})."
+    );
+    let mut overlaps =
+        "Whether cells of the source overlap in space is a property of the input mesh and was not decided.";
+    if let MapData::Shell(shell) = &map.data {
+        statement = format!(
+            "The projection along the pillars is a homeomorphism from the surface of {vertices} vertices and {cells} \
+             triangles onto the {onto} of {} prisms ({theorem}).",
+            shell.prisms.len() / 3
+        );
+        overlaps = "Away from the surface the shell may overlap itself in space; whether it does was not decided.";
+    }
+    let limits = [
+        "The claim is about the complex with these cells and the exact rational map that the file defines.",
+        overlaps,
+        "Evaluation in floating point approximates this map; it is not the certified object.",
+    ];
+    Ok(Claim {
+        statement,
+        kind: kind.to_owned(),
+        target: target.to_owned(),
+        checked,
+        source_sha256: map.manifest.source.content_sha256.clone(),
+        limits: limits.map(str::to_owned).to_vec(),
+    })
+}
+
+/// Applies every rule and counts what was checked.
+fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
+    if let MapData::Shell(data) = &map.data {
+        return shell::check_shell(map, data);
+    }
     let source = source::check_source(map)?;
     let refined = match &map.refinement {
         Some(refinement) => Some(subdivision::check_subdivision(map, refinement, &source)?),
@@ -138,29 +190,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
             piecewise_linear::check_onto_box(complex, |v| images[v as usize], "P")?;
             checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
         }
+        MapData::Shell(_) => {} // above
     }
-    let (kind, theorem) = match map.manifest.kind {
-        Kind::Foliation => ("foliation", "theorem on locally bipolar foliations, rules 1-8"),
-        Kind::PiecewiseLinear => ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P"),
-    };
-    let (target, onto) = match map.manifest.target {
-        Target::Square => ("square", "square [0,1]^2"),
-        Target::Cube => ("cube", "cube [0,1]^3"),
-        Target::Disk => ("disk", "diamond |x| + |y| <= 1, and by a fixed homeomorphism onto the unit disk"),
-        Target::Ball => ("ball", "tetrahedron of the format, and by a fixed homeomorphism onto a round ball"),
-    };
-    let complex = format!("complex of {} vertices and {} cells", map.positions.len(), source.count());
-    let limits = [
-        "The claim is about the complex with these cells and the exact rational map that the file defines.",
-        "Whether cells of the source overlap in space is a property of the input mesh and was not decided.",
-        "Evaluation in floating point approximates this map; it is not the certified object.",
-    ];
-    Ok(Claim {
-        statement: format!("The stored map is a homeomorphism from the {complex} onto the {onto} ({theorem})."),
-        kind: kind.to_owned(),
-        target: target.to_owned(),
-        checked,
-        source_sha256: map.manifest.source.content_sha256.clone(),
-        limits: limits.map(str::to_owned).to_vec(),
-    })
+    Ok(checked)
 }

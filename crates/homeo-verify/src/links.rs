@@ -1,4 +1,4 @@
-//! Rule 8: manifolds with boundary by their vertex links, and their topological type.
+//! Rules 8 and L1: manifolds with boundary by their vertex links, and their topological type.
 //!
 //! *Theorem (classification of compact surfaces).* A connected surface is a sphere when it has no boundary and
 //! Euler number 2, a disk when it has a boundary and Euler number 1, an annulus when it has two boundary loops
@@ -20,10 +20,10 @@ pub(crate) struct Shape {
 }
 
 /// Checks that every vertex link is a sphere or a ball, and returns the topological numbers.
-pub(crate) fn check_manifold(complex: &Complex, what: &str) -> Checked<Shape> {
+pub(crate) fn check_manifold(complex: &Complex, what: &str, rule: &'static str) -> Checked<Shape> {
     let [vertices, edges] = complex.small_faces();
-    let edges = check_stars(complex, edges, what)?;
-    check_stars(complex, vertices, what)?;
+    let edges = check_stars(complex, edges, what, rule)?;
+    check_stars(complex, vertices, what, rule)?;
     if complex.size == 4 {
         check_vertex_links(complex, &edges, what)?;
     }
@@ -31,7 +31,7 @@ pub(crate) fn check_manifold(complex: &Complex, what: &str) -> Checked<Shape> {
 }
 
 /// The cells around each face of a kind are connected through facets that contain it. Returns the sorted faces.
-fn check_stars(complex: &Complex, kind: &[u8], what: &str) -> Checked<Vec<u128>> {
+fn check_stars(complex: &Complex, kind: &[u8], what: &str, rule: &'static str) -> Checked<Vec<u128>> {
     let (size, faces) = (complex.size, complex.sorted_faces(kind));
     let mut classes = UnionFind::new(faces.len());
     for (a, b) in complex.inner_facets() {
@@ -48,7 +48,7 @@ fn check_stars(complex: &Complex, kind: &[u8], what: &str) -> Checked<Vec<u128>>
             let face = complex.face(first / kind.len(), kind[first % kind.len()]);
             let cells = [first / kind.len(), place(key) / kind.len()];
             let what = format!("{what}: the cells around a face of {} vertices are not connected", face.len());
-            return Err(refuted("8", format!("{what} through facets"), &cells, &face));
+            return Err(refuted(rule, format!("{what} through facets"), &cells, &face));
         }
     }
     Ok(faces)
@@ -108,7 +108,7 @@ mod tests {
 
     fn numbers(size: usize, cells: &[u32]) -> Option<(usize, i64, usize)> {
         let complex = Complex::new(size, cells.to_vec(), 12, ["8"; 2]).ok()?;
-        let shape = check_manifold(&complex, "test").ok()?;
+        let shape = check_manifold(&complex, "test", "8").ok()?;
         Some((shape.components, shape.euler, shape.boundaries))
     }
 

@@ -14,12 +14,13 @@ pub(crate) enum Target {
     Disk,
     Cube,
     Ball,
+    Shell,
 }
 
 impl Target {
     /// Vertices of a cell: three or four.
     pub(crate) fn cell_size(self) -> usize {
-        if matches!(self, Target::Square | Target::Disk) { 3 } else { 4 }
+        if matches!(self, Target::Cube | Target::Ball) { 4 } else { 3 }
     }
 }
 
@@ -29,6 +30,7 @@ impl Target {
 pub(crate) enum Kind {
     Foliation,
     PiecewiseLinear,
+    Shell,
 }
 
 /// What the manifest claims.
@@ -92,6 +94,8 @@ impl Manifest {
         readable(is_radial == manifest.centre.is_some(), "a centre belongs to disk and ball, and to no other target")?;
         let is_possible = !is_radial || manifest.kind == Kind::Foliation;
         readable(is_possible, "only a foliation can reach the disk or the ball")?;
+        let is_shell = manifest.kind == Kind::Shell;
+        readable(is_shell == (manifest.target == Target::Shell), "kind shell and target shell belong together")?;
         Ok(manifest)
     }
 }

@@ -29,6 +29,7 @@ pub(crate) enum MapData {
     Foliation(FoliationData),
     /// Images of the vertices.
     PiecewiseLinear(Vec<Point>),
+    Shell(ShellData),
 }
 
 /// The arrays of a foliation; the section is empty for the ball.
@@ -39,6 +40,14 @@ pub(crate) struct FoliationData {
     pub(crate) section_coordinates: Vec<Point>,
 }
 
+/// The arrays of a shell.
+pub(crate) struct ShellData {
+    /// The bottom, middle and top points of the columns.
+    pub(crate) levels: [Vec<Point>; 3],
+    /// The columns of the prisms, one prism after the other.
+    pub(crate) prisms: Vec<u32>,
+}
+
 impl MapFile {
     /// Decodes a map file and checks its hash. Arrays are taken out of the archive; in the end only notes may be left.
     pub(crate) fn read(bytes: &[u8]) -> Result<Self, Unreadable> {
@@ -47,11 +56,13 @@ impl MapFile {
         let manifest = Manifest::parse(text)?;
         let (positions, cells) = read_source(&mut archive, &manifest)?;
         let size = manifest.target.cell_size();
-        let refinement = match archive.0.contains_key("cells.npy") {
+        let refinement = match archive.0.contains_key("cells.npy") && manifest.kind != Kind::Shell {
             true => Some(Refinement::read(&mut archive, size)?),
             false => None,
         };
-        let data = if manifest.kind == Kind::PiecewiseLinear {
+        let data = if manifest.kind == Kind::Shell {
+            MapData::Shell(ShellData::read(&mut archive)?)
+        } else if manifest.kind == Kind::PiecewiseLinear {
             let count = positions.len() + refinement.as_ref().map_or(0, |r| r.carriers.len());
             MapData::PiecewiseLinear(Array::take(&mut archive, "target_positions")?.read_points(Some(count), size - 1)?)
         } else {
@@ -79,8 +90,11 @@ impl MapFile {
         carrier.into_iter().filter(|&(_, weight)| weight > 0)
     }
 
-    /// Where a vertex lies, rounded, for drawings only; `None` if nowhere.
+    /// Where a vertex, or the middle of a column, lies, rounded, for drawings only; `None` if nowhere.
     pub(crate) fn place(&self, vertex: u32) -> Option<Point> {
+        if let (MapData::Shell(shell), Some(v)) = (&self.data, (vertex as usize).checked_sub(self.positions.len())) {
+            return shell.levels[1].get(v).copied().filter(|p| p.iter().all(|x| x.is_finite()));
+        }
         let (mut sum, mut total) = ([0.0; 3], 0.0);
         for (source_vertex, weight) in self.carrier(vertex) {
             let position = self.positions.get(source_vertex as usize)?;
@@ -131,5 +145,16 @@ impl FoliationData {
             section_coordinates = Array::take(archive, "section_coordinates")?.read_points(rows, columns)?;
         }
         Ok(FoliationData { directions, lengths, section_vertices, section_coordinates })
+    }
+}
+
+impl ShellData {
+    fn read(archive: &mut Archive) -> Result<Self, Unreadable> {
+        let bottom = Array::take(archive, "shell_bottom")?.read_points(None, 3)?;
+        let count = Some(bottom.len());
+        let middle = Array::take(archive, "shell_middle")?.read_points(count, 3)?;
+        let top = Array::take(archive, "shell_top")?.read_points(count, 3)?;
+        let prisms = Array::take(archive, "prisms")?.read(U4, None, 3)?;
+        Ok(ShellData { levels: [bottom, middle, top], prisms })
     }
 }

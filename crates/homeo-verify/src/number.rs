@@ -2,6 +2,7 @@
 //!
 //! The predicate of `robust` is exact as long as nothing underflows or overflows. Outside
 //! `2^-250 ..= 2^250` (zero aside) the same determinant is computed with integers in units of `2^-1074`.
+//! Points with rational coordinates become [`Exact`] ones when all points are multiplied by one denominator.
 
 use dashu_int::IBig;
 use robust::{Coord3D, orient3d};
@@ -10,18 +11,55 @@ use std::cmp::Ordering;
 /// A point, or a vertex' image; in the plane the last coordinate does not count.
 pub(crate) type Point = [f64; 3];
 
+/// A point in whole units: those of `2^-1074`, or a fraction of them that all points of a computation share.
+pub(crate) type Exact = [IBig; 3];
+
 /// The sign of `det(b - a, c - a, d - a)`, exact.
 pub(crate) fn orientation_3d(a: Point, b: Point, c: Point, d: Point) -> Ordering {
-    let (smallest, largest) = (f64::from_bits((1023 - 250) << 52), f64::from_bits((1023 + 250) << 52));
-    if [a, b, c, d].iter().flatten().all(|&x| x == 0.0 || (smallest..=largest).contains(&x.abs())) {
+    if are_moderate(&[a, b, c, d]) {
         let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p[0], y: p[1], z: p[2] });
         let determinant = orient3d(b, a, c, d); // its convention is the opposite one
         return determinant.partial_cmp(&0.0).unwrap_or(Ordering::Equal);
     }
-    let step = |p: Point| [0, 1, 2].map(|axis| in_finest_units(p[axis]) - in_finest_units(a[axis]));
-    let [b, c, d] = [b, c, d].map(step);
-    let minor = |x: usize, y: usize| &c[x] * &d[y] - &c[y] * &d[x];
-    (&b[0] * minor(1, 2) + &b[1] * minor(2, 0) + &b[2] * minor(0, 1)).cmp(&IBig::ZERO)
+    determinant_sign([b, c, d].map(|p| exact_step(a, p)))
+}
+
+/// The sign of `det(b - a, d - c, f - e)` for the steps `[a, b]`, `[c, d]`, `[e, f]`, exact.
+pub(crate) fn steps_orientation(steps: [[Point; 2]; 3]) -> Ordering {
+    if are_moderate(steps.as_flattened()) {
+        let [a, b, c] = steps.map(|[from, to]| [0, 1, 2].map(|axis| to[axis] - from[axis]));
+        let (mut determinant, mut magnitude) = (0.0, 0.0);
+        for (x, y, z) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let (plus, minus) = (b[y] * c[z], b[z] * c[y]);
+            determinant += a[x] * (plus - minus);
+            magnitude += a[x].abs() * (plus.abs() + minus.abs());
+        }
+        // Every term went through at most 9 roundings, each by a factor within `1 +- EPSILON / 2`.
+        if determinant.abs() > 16.0 * f64::EPSILON * magnitude {
+            return determinant.total_cmp(&0.0);
+        }
+    }
+    determinant_sign(steps.map(|[from, to]| exact_step(from, to)))
+}
+
+/// The sign of `det(b - a, c - a, d - a)`.
+pub(crate) fn exact_orientation(a: &Exact, b: &Exact, c: &Exact, d: &Exact) -> Ordering {
+    determinant_sign([b, c, d].map(|p| [0, 1, 2].map(|axis| &p[axis] - &a[axis])))
+}
+
+/// Whether products of three differences of these coordinates neither underflow nor overflow.
+fn are_moderate(points: &[Point]) -> bool {
+    let (smallest, largest) = (f64::from_bits((1023 - 250) << 52), f64::from_bits((1023 + 250) << 52));
+    points.iter().flatten().all(|&x| x == 0.0 || (smallest..=largest).contains(&x.abs()))
+}
+
+fn exact_step(from: Point, to: Point) -> Exact {
+    [0, 1, 2].map(|axis| in_finest_units(to[axis]) - in_finest_units(from[axis]))
+}
+
+fn determinant_sign([a, b, c]: [Exact; 3]) -> Ordering {
+    let minor = |x: usize, y: usize| &b[x] * &c[y] - &b[y] * &c[x];
+    (&a[0] * minor(1, 2) + &a[1] * minor(2, 0) + &a[2] * minor(0, 1)).cmp(&IBig::ZERO)
 }
 
 /// The sign of `det(b - a, c - a)` of the first two coordinates, exact: that of a prism of height 1.
@@ -64,6 +102,9 @@ mod tests {
             assert_eq!(orientation_3d(o, x, y, z), Ordering::Greater);
             assert_eq!(orientation_3d(x, o, y, z), Ordering::Less);
             assert_eq!(orientation_3d(o, x, y, at(5., 9., 0.)), Ordering::Equal);
+            assert_eq!(steps_orientation([[o, x], [x, y], [y, z]]), Ordering::Greater);
+            assert_eq!(steps_orientation([[o, x], [y, x], [y, z]]), Ordering::Less);
+            assert_eq!(steps_orientation([[o, x], [y, x], [z, at(3., 7., 1.)]]), Ordering::Equal);
             assert_eq!(orientation_2d(o, x, y), Ordering::Greater);
             assert!(is_flat_triangle(o, at(1., 2., 3.), at(2., 4., 6.)));
             assert!(!is_flat_triangle(o, at(1., 2., 3.), at(2., 4., 7.)));

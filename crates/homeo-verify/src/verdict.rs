@@ -27,9 +27,9 @@ pub enum Verdict {
 pub struct Claim {
     /// The claim in words, with the theorem that was applied.
     pub statement: String,
-    /// `foliation` or `piecewise-linear`.
+    /// `foliation`, `piecewise-linear` or `shell`.
     pub kind: String,
-    /// `square`, `disk`, `cube` or `ball`.
+    /// `square`, `disk`, `cube`, `ball` or `shell`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]
@@ -44,16 +44,17 @@ fn as_object<S: Serializer>(pairs: &[(&str, u64)], serializer: S) -> Result<S::O
     serializer.collect_map(pairs.iter().copied())
 }
 
-/// Where a rule of `docs/certificate-format-v1.md` fails.
+/// Where a rule of `docs/certificate-format-v1.md` or `docs/theory/shells.md` fails.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Witness {
     /// The rule's name, for instance `"5"` or `"S3"`.
     pub rule: &'static str,
     /// What is wrong, in words.
     pub message: String,
-    /// Cells concerned: of the source for the rules S and 8, of the refined complex for the others.
+    /// Cells concerned: of the source for the rules S and 8, of the refined complex for the others. For shells source
+    /// triangles come first, then prisms.
     pub cells: Vec<u32>,
-    /// Vertices concerned, in the numbering of the refined complex.
+    /// Vertices concerned, in the numbering of the refined complex. For shells source vertices come first, then columns.
     pub vertices: Vec<u32>,
     /// Where those vertices lie (rounded), to be drawn; empty when they have no finite place.
     pub points: Vec<[f64; 3]>,

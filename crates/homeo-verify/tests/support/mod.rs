@@ -2,6 +2,7 @@
 #![allow(dead_code)] // every test uses another part
 
 pub mod build;
+pub mod clip;
 pub mod oracle;
 pub mod random;
 pub mod write;
@@ -20,6 +21,9 @@ pub struct Map {
     pub section_vertices: Vec<u32>,
     pub section_coordinates: Vec<Vec<f64>>,
     pub target_positions: Vec<Vec<f64>>,
+    /// Bottom, middle and top points of the columns of a shell.
+    pub levels: [Vec<Vec<f64>>; 3],
+    pub prisms: Vec<Vec<u32>>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +36,7 @@ pub struct Refinement {
 
 impl Map {
     pub fn new(kind: &str, target: &str, positions: Vec<Vec<f64>>, source_cells: Vec<Vec<u32>>) -> Map {
-        let dimension = if target == "square" || target == "disk" { 2 } else { 3 };
+        let dimension = if target == "cube" || target == "ball" { 3 } else { 2 };
         let manifest = json!({
             "format": "homeo", "version": 1, "kind": kind, "dimension": dimension, "target": target, "centre": null,
             "source": {"name": "test", "vertices": 0, "cells": 0, "content_sha256": ""},
@@ -48,6 +52,8 @@ impl Map {
             section_vertices: vec![],
             section_coordinates: vec![],
             target_positions: vec![],
+            levels: Default::default(),
+            prisms: vec![],
         }
     }
 
@@ -57,7 +63,7 @@ impl Map {
 
     /// Vertices per cell.
     pub fn size(&self) -> usize {
-        if ["square", "disk"].contains(&self.text("target").as_str()) { 3 } else { 4 }
+        if ["square", "disk", "shell"].contains(&self.text("target").as_str()) { 3 } else { 4 }
     }
 
     /// Cells of the refined complex.

@@ -97,6 +97,13 @@ pub fn entries(map: &Map) -> Vec<(String, Vec<u8>)> {
         add("cells", "<u4", r.cells.len(), size, little_endian!(r.cells));
         add("parents", "<u4", r.parents.len(), 0, little_endian!(std::slice::from_ref(&r.parents)));
     }
+    if map.text("kind") == "shell" {
+        for (name, level) in ["shell_bottom", "shell_middle", "shell_top"].into_iter().zip(&map.levels) {
+            add(name, "<f8", level.len(), 3, little_endian!(level));
+        }
+        add("prisms", "<u4", map.prisms.len(), 3, little_endian!(map.prisms));
+        return entries;
+    }
     if map.text("kind") == "piecewise-linear" {
         add("target_positions", "<f8", map.target_positions.len(), size - 1, little_endian!(map.target_positions));
         return entries;
