@@ -4,6 +4,7 @@ use homeo_core::number::Rational;
 use homeo_core::predicate::{Sign, orient3d};
 use homeo_core::spatial::{Aabb, Tree};
 
+use super::Enclosed;
 use crate::input::SourceMesh;
 
 type Point = [f64; 3];
@@ -202,6 +203,24 @@ impl Shell {
         Err(ShellEvaluationError::Outside)
     }
 
+    /// The point of the middle surface on the pillar line of a point, rounded from the exact one.
+    ///
+    /// # Errors
+    /// As for [`project_exact`](Self::project_exact).
+    pub fn to_middle(&self, point: Point) -> Result<Enclosed, ShellEvaluationError> {
+        let at = self.to_middle_exact(&rational(point)?)?;
+        Ok(rounded(&self.unproject_exact(&at)?))
+    }
+
+    /// The point of the source surface on the pillar line of a point, rounded from the exact one.
+    ///
+    /// # Errors
+    /// As for [`project_exact`](Self::project_exact) and [`to_source_exact`](Self::to_source_exact).
+    pub fn to_source(&self, point: Point) -> Result<Enclosed, ShellEvaluationError> {
+        let at = self.project_exact(&rational(point)?)?;
+        Ok(rounded(&self.to_source_exact(&at)?.point))
+    }
+
     /// The corners of the pillar line through a point, from bottom to top.
     fn fibre(&self, at: &ShellPoint<Rational>) -> Result<Vec<ExactPoint>, ShellEvaluationError> {
         let [_, middle, last] = self.order(at.prism.min(self.parts.prisms.len().saturating_sub(1) as u32));
@@ -295,6 +314,17 @@ impl Shell {
 fn level_pair(parts: &ShellParts, column: usize, slab: usize) -> [Point; 2] {
     let levels = [parts.bottom[column], parts.middle[column], parts.top[column]];
     [levels[slab], levels[slab + 1]]
+}
+
+fn rational(point: Point) -> Result<ExactPoint, ShellEvaluationError> {
+    if point.iter().all(|x| x.is_finite()) { Ok(point.map(exact)) } else { Err(ShellEvaluationError::NotFinite) }
+}
+
+/// The nearest doubles, with the bound that rounding to nearest has.
+fn rounded(point: &ExactPoint) -> Enclosed {
+    let point = point.each_ref().map(Rational::to_f64);
+    let size = point.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+    Enclosed { point, radius: f64::EPSILON * size }
 }
 
 /// A finite number, exactly.
