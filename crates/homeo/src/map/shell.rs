@@ -145,20 +145,12 @@ impl Shell {
         let upper = at.height >= *zero;
         let height = if upper { at.height.clone() } else { &at.height + &Rational::ONE };
         let slab = 2 * at.prism as usize + usize::from(upper);
-        let [_, middle, last] = self.order(at.prism);
-        let both = &at.weights[middle] + &at.weights[last];
-        // How much of each column's weight is at its high point.
+        // How much of each column's weight is at its high point: the columns with the largest numbers rise first.
         let mut high = [Rational::ZERO, Rational::ZERO, Rational::ZERO];
-        let [first, ..] = self.order(at.prism);
-        if height <= at.weights[last] {
-            high[last] = height;
-        } else if height <= both {
-            high[last] = at.weights[last].clone();
-            high[middle] = &height - &at.weights[last];
-        } else {
-            high[last] = at.weights[last].clone();
-            high[middle] = at.weights[middle].clone();
-            high[first] = &height - &both;
+        let mut left = &height * &self.lifted(at);
+        for k in self.rising(at.prism) {
+            high[k] = if left < at.weights[k] { left.clone() } else { at.weights[k].clone() };
+            left = &left - &high[k];
         }
         let columns = self.parts.prisms[slab / 2].map(|v| level_pair(&self.parts, v as usize, slab % 2));
         Ok(std::array::from_fn(|axis| {
@@ -221,20 +213,23 @@ impl Shell {
         Ok(rounded(&self.to_source_exact(&at)?.point))
     }
 
-    /// The corners of the pillar line through a point, from bottom to top.
+    /// The corners of the pillar line through a point, from bottom to top; one point where it has no length.
     fn fibre(&self, at: &ShellPoint<Rational>) -> Result<Vec<ExactPoint>, ShellEvaluationError> {
-        let [_, middle, last] = self.order(at.prism.min(self.parts.prisms.len().saturating_sub(1) as u32));
-        let both = &at.weights[middle] + &at.weights[last];
-        let one = Rational::ONE;
-        let heights = [
-            -Rational::ONE,
-            &at.weights[last] - &one,
-            &both - &one,
-            Rational::ZERO,
-            at.weights[last].clone(),
-            both.clone(),
-            one.clone(),
-        ];
+        if at.prism as usize >= self.parts.prisms.len() {
+            return Err(ShellEvaluationError::NoSuchPoint);
+        }
+        // The line turns where a column has risen.
+        let lifted = self.lifted(at);
+        let mut heights = vec![Rational::ZERO];
+        for k in self.rising(at.prism).filter(|_| !lifted.is_zero()) {
+            let next = heights.last().map_or(Rational::ZERO, |last| last + &(&at.weights[k] / &lifted));
+            heights.push(next);
+        }
+        if lifted.is_zero() {
+            return Ok(vec![self.unproject_exact(&ShellPoint { height: Rational::ZERO, ..at.clone() })?]);
+        }
+        let lower = heights.iter().map(|h| h - &Rational::ONE);
+        let heights: Vec<Rational> = lower.chain(heights.iter().skip(1).cloned()).collect();
         let point = |height| self.unproject_exact(&ShellPoint { prism: at.prism, weights: at.weights.clone(), height });
         heights.into_iter().map(point).collect()
     }
@@ -245,6 +240,24 @@ impl Shell {
         let mut order = [0, 1, 2];
         order.sort_unstable_by_key(|&k| columns[k]);
         order
+    }
+
+    /// The positions of the columns that have a length, by descending numbers.
+    fn rising(&self, prism: u32) -> impl Iterator<Item = usize> + '_ {
+        let columns = self.parts.prisms[prism as usize];
+        let order = self.order(prism);
+        order.into_iter().rev().filter(move |&k| !self.is_pinched(columns[k]))
+    }
+
+    fn is_pinched(&self, column: u32) -> bool {
+        let parts = &self.parts;
+        let column = column as usize;
+        parts.bottom[column] == parts.middle[column] && parts.middle[column] == parts.top[column]
+    }
+
+    /// The weight of the columns that have a length: 1 where none is pinched.
+    fn lifted(&self, at: &ShellPoint<Rational>) -> Rational {
+        self.rising(at.prism).map(|k| at.weights[k].clone()).sum()
     }
 
     /// The tetrahedra of the slabs of a prism; see `docs/theory/shells.md`.
@@ -263,15 +276,20 @@ impl Shell {
         self.tetrahedra(prism).into_iter().find_map(|cell| {
             let corners = cell.map(|(column, is_high)| columns[column][usize::from(is_high)].map(exact));
             let inside = weights_in(&corners, point)?;
-            let mut weights = [Rational::ZERO, Rational::ZERO, Rational::ZERO];
-            let mut height = if slab % 2 == 1 { Rational::ZERO } else { -Rational::ONE };
+            let mut at = ShellPoint { prism, weights: [0, 1, 2].map(|_| Rational::ZERO), height: Rational::ZERO };
             for ((column, is_high), weight) in cell.into_iter().zip(&inside) {
-                weights[column] = &weights[column] + weight;
-                if is_high {
-                    height = &height + weight;
+                at.weights[column] = &at.weights[column] + weight;
+                if is_high && !self.is_pinched(self.parts.prisms[slab / 2][column]) {
+                    at.height = &at.height + weight;
                 }
             }
-            Some(ShellPoint { prism, weights, height })
+            let lifted = self.lifted(&at);
+            if lifted.is_zero() {
+                at.height = Rational::ZERO; // a pinched point
+            } else {
+                at.height = &(&at.height / &lifted) - &if slab % 2 == 1 { Rational::ZERO } else { Rational::ONE };
+            }
+            Some(at)
         })
     }
 

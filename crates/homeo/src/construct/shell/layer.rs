@@ -62,6 +62,9 @@ pub(super) struct Layer {
     contents: Vec<Vec<u32>>,
 }
 
+/// A hypothesis that fails, and in which slab: 0 for the lower one, 1 for the upper one.
+pub(super) type FailureIn = (Failure, usize);
+
 /// Which of the theorem's hypotheses fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Failure {
@@ -98,7 +101,7 @@ impl Layer {
     }
 
     /// Finds the contents of a prism among all source triangles and checks everything (L2 to L4).
-    pub fn fill(&mut self, prism: u32) -> Result<(), Failure> {
+    pub fn fill(&mut self, prism: u32) -> Result<(), FailureIn> {
         let body = self.prism(self.prisms[prism as usize]);
         body.check(&self.surface)?;
         let mut near = Vec::new();
@@ -111,7 +114,7 @@ impl Layer {
     /// Replaces prisms by others over the same part of the surface if the new ones satisfy L2 to L4; `columns` may have
     /// been changed before. Their common side walls must be as before, so what the old ones held the new ones hold.
     /// Returns the new prisms' numbers: as many of the old ones as are needed.
-    pub fn replace(&mut self, old: &[u32], new: &[[u32; 3]]) -> Result<(), Failure> {
+    pub fn replace(&mut self, old: &[u32], new: &[[u32; 3]]) -> Result<(), FailureIn> {
         debug_assert!(new.len() <= old.len());
         let bodies: Vec<Prism> = new.iter().map(|&corners| self.prism(corners)).collect();
         bodies.iter().try_for_each(Prism::check_volumes)?;
@@ -178,24 +181,24 @@ struct Prism {
 }
 
 impl Prism {
-    fn check(&self, surface: &Surface) -> Result<(), Failure> {
+    fn check(&self, surface: &Surface) -> Result<(), FailureIn> {
         self.check_volumes()?;
         self.check_caps(surface)
     }
 
     /// L2.
-    fn check_volumes(&self) -> Result<(), Failure> {
+    fn check_volumes(&self) -> Result<(), FailureIn> {
         let is_positive = |[a, b, c, d]: [Point; 4]| orient3d(a, b, c, d) == Sign::Positive;
         let pinched = self.pinched.iter().filter(|pinched| **pinched).count();
-        let holds = pinched <= 1 && SLABS.iter().all(|&slab| self.tetrahedra(slab).all(is_positive));
-        if holds { Ok(()) } else { Err(Failure::Volume) }
+        let holds = |slab: [usize; 2]| pinched <= 1 && self.tetrahedra(slab).all(is_positive);
+        SLABS.iter().position(|&slab| !holds(slab)).map_or(Ok(()), |slab| Err((Failure::Volume, slab)))
     }
 
     /// L3.
-    fn check_caps(&self, surface: &Surface) -> Result<(), Failure> {
+    fn check_caps(&self, surface: &Surface) -> Result<(), FailureIn> {
         let pinched = self.pinched.iter().position(|pinched| *pinched);
-        let holds = [0, 2].iter().all(|&level| surface.is_clear_of(self.columns.map(|c| c[level]), pinched));
-        if holds { Ok(()) } else { Err(Failure::Cap) }
+        let holds = |level: usize| surface.is_clear_of(self.columns.map(|c| c[level]), pinched);
+        (0..2).find(|slab| !holds(2 * slab)).map_or(Ok(()), |slab| Err((Failure::Cap, slab)))
     }
 
     /// All tetrahedra of a slab in any order of the columns: a pillar and a point of each other column.
@@ -210,7 +213,7 @@ impl Prism {
     }
 
     /// The source triangles among `near` that may have an area in common with the prism; L4 for those that have.
-    fn contents(&self, surface: &Surface, near: &[u32]) -> Result<Vec<u32>, Failure> {
+    fn contents(&self, surface: &Surface, near: &[u32]) -> Result<Vec<u32>, FailureIn> {
         let hull = Aabb::of(self.columns.as_flattened());
         let walls: [Vec<[Point; 3]>; 2] = [self.outer_walls(SLABS[0]), self.outer_walls(SLABS[1])];
         let mut contents = Vec::new();
@@ -220,13 +223,13 @@ impl Prism {
                 continue;
             }
             let mut is_inside = false;
-            for (slab, walls) in SLABS.into_iter().zip(&walls) {
+            for (number, (slab, walls)) in SLABS.into_iter().zip(&walls).enumerate() {
                 if walls.iter().any(|wall| is_outside(*wall, triangle)) {
                     continue;
                 }
                 is_inside = true;
                 if !self.is_crossed(slab, triangle) && self.tetrahedra(slab).any(|cell| share_area(cell, triangle)) {
-                    return Err(Failure::Crossing);
+                    return Err((Failure::Crossing, number));
                 }
             }
             if is_inside {

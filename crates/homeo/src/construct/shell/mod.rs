@@ -79,8 +79,8 @@ pub enum ShellError {
     Cancelled,
 }
 
-/// Halvings of a column before it is given up.
-const MOST_HALVINGS: u32 = 60;
+/// A column is given up when it is shorter than this part of what it began with.
+const SHORTEST: f64 = 1e-13;
 
 /// Builds a shell round a closed surface.
 ///
@@ -143,25 +143,26 @@ fn first_layer(
     };
     let columns = (0..directions.len()).map(|v| column(v, [lengths[v]; 2])).collect();
     let mut reaches: Vec<[f64; 2]> = lengths.iter().map(|&length| [length; 2]).collect();
-    let mut halvings = vec![0u32; directions.len()];
     let mut layer = Layer::new(source, columns);
     let mut waiting: Vec<u32> = (0..layer.prisms.len() as u32).rev().collect();
     let mut is_waiting = vec![true; waiting.len()];
     while let Some(prism) = waiting.pop() {
         is_waiting[prism as usize] = false;
-        let Err(failure) = layer.fill(prism) else { continue };
+        let Err((failure, slab)) = layer.fill(prism) else { continue };
         if progress.is_cancelled() {
             return Err(ShellError::Cancelled);
         }
         let corners = layer.prisms[prism as usize];
-        for &v in &corners {
-            let v = v as usize;
-            halvings[v] += 1;
-            if halvings[v] > MOST_HALVINGS {
+        // The longest columns are halved: short ones do less harm, and a fan of thin triangles would wear them out.
+        let longest = corners.iter().map(|&v| reaches[v as usize][slab]).fold(0.0, f64::max);
+        for v in corners.map(|v| v as usize) {
+            if reaches[v][slab] > 0.6 * longest {
+                reaches[v][slab] /= 2.0;
+                layer.columns[v] = column(v, reaches[v]);
+            }
+            if reaches[v][slab] < SHORTEST * lengths[v] {
                 return Err(ShellError::Stuck { triangle: prism, reason: reason(failure) });
             }
-            reaches[v] = reaches[v].map(|reach| reach / 2.0);
-            layer.columns[v] = column(v, reaches[v]);
         }
         for &touched in corners.iter().flat_map(|&v| &layer.around[v as usize]) {
             if !is_waiting[touched as usize] {
