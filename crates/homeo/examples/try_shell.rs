@@ -32,7 +32,7 @@ fn main() {
             other => {
                 failures += 1;
                 if failures < 4 {
-                    println!("{p:?} {other:?}");
+                    println!("{p:?} {other:?} {:?}", shell.to_middle_exact(&exact));
                 }
             }
         }

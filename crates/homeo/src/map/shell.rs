@@ -183,6 +183,13 @@ impl Shell {
         let mut candidates = Vec::new();
         self.triangles.query_box(&region, |t| candidates.push(t as u32));
         candidates.sort_unstable();
+        if let [pinched] = fibre.as_slice() {
+            let is_corner = |t: &u32| {
+                self.source.complex().cells()[*t as usize].iter().any(|v| self.source.positions()[v.index()] == near[0])
+            };
+            let triangle = candidates.into_iter().find(is_corner).ok_or(ShellEvaluationError::Outside)?;
+            return Ok(SurfacePoint { triangle, point: pinched.clone() });
+        }
         for t in candidates {
             let corners =
                 self.source.complex().cells()[t as usize].map(|v| self.source.positions()[v.index()].map(exact));
@@ -218,15 +225,15 @@ impl Shell {
         if at.prism as usize >= self.parts.prisms.len() {
             return Err(ShellEvaluationError::NoSuchPoint);
         }
-        // The line turns where a column has risen.
         let lifted = self.lifted(at);
-        let mut heights = vec![Rational::ZERO];
-        for k in self.rising(at.prism).filter(|_| !lifted.is_zero()) {
-            let next = heights.last().map_or(Rational::ZERO, |last| last + &(&at.weights[k] / &lifted));
-            heights.push(next);
-        }
         if lifted.is_zero() {
             return Ok(vec![self.unproject_exact(&ShellPoint { height: Rational::ZERO, ..at.clone() })?]);
+        }
+        // The line turns where a column has risen.
+        let mut heights = vec![Rational::ZERO];
+        for k in self.rising(at.prism) {
+            let next = heights.last().map_or(Rational::ZERO, |last| last + &(&at.weights[k] / &lifted));
+            heights.push(next);
         }
         let lower = heights.iter().map(|h| h - &Rational::ONE);
         let heights: Vec<Rational> = lower.chain(heights.iter().skip(1).cloned()).collect();

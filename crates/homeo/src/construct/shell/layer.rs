@@ -3,7 +3,7 @@
 use homeo_core::predicate::{Sign, crossing_sign, orient3d, share_area, triangles_meet, triangles_meet_beyond_vertex};
 use homeo_core::spatial::{Aabb, Tree};
 
-use super::directions::{minus, triangles_around};
+use super::directions::{dot, minus, triangles_around};
 use crate::input::SourceMesh;
 use crate::map::ShellParts;
 
@@ -138,6 +138,26 @@ impl Layer {
             corners.iter().for_each(|&column| self.around[column as usize].push(prism));
         }
         Ok(())
+    }
+
+    /// Accepts a column that was changed, if its prisms satisfy L2 to L4.
+    pub fn recheck(&mut self, column: u32) -> Result<(), FailureIn> {
+        let prisms = self.around[column as usize].clone();
+        let corners: Vec<[u32; 3]> = prisms.iter().map(|&p| self.prisms[p as usize]).collect();
+        self.replace(&prisms, &corners)
+    }
+
+    /// A column like `wanted` with its middle where it meets the surface, with the lengths of the present column;
+    /// `None` if it does not meet what the prisms round it hold.
+    pub fn with_middle_on_surface(&self, column: u32, wanted: Column) -> Option<Column> {
+        let [from, _, to] = wanted;
+        let held = self.around[column as usize].iter().flat_map(|&p| &self.contents[p as usize]);
+        let share = held.filter_map(|&t| hit(from, to, self.surface.corners[t as usize])).next()?;
+        let at = |share: f64| [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+        let [bottom, middle, top] = self.columns[column as usize];
+        let length = |a: Point, b: Point| minus(a, b).iter().map(|x| x * x).sum::<f64>().sqrt();
+        let (down, up, whole) = (length(bottom, middle), length(top, middle), length(from, to));
+        Some([at(share - down / whole), at(share), at(share + up / whole)])
     }
 
     /// Columns that share a prism with the given one, ascending.
@@ -280,6 +300,19 @@ fn is_outside([a, b, c]: [Point; 3], triangle: [Point; 3]) -> bool {
         }
     }
     is_off
+}
+
+/// Where a segment meets a triangle, as a share of it; rounded, and no decision rests on it.
+fn hit(from: Point, to: Point, [a, b, c]: [Point; 3]) -> Option<f64> {
+    let (u, v, step, base) = (minus(b, a), minus(c, a), minus(to, from), minus(from, a));
+    let cross = |p: Point, q: Point| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    let normal = cross(u, v);
+    let speed = dot(normal, step);
+    let share = -dot(normal, base) / speed;
+    let place = [0, 1, 2].map(|axis| base[axis] + share * step[axis]);
+    let size = dot(normal, normal);
+    let (x, y) = (dot(cross(place, v), normal) / size, dot(cross(u, place), normal) / size);
+    (x >= -1e-9 && y >= -1e-9 && x + y <= 1.0 + 1e-9 && (0.0..=1.0).contains(&share)).then_some(share)
 }
 
 /// Twice the area of a triangle, and the sum of its squared sides.

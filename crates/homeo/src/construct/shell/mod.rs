@@ -214,6 +214,7 @@ fn simplify(
         info.rounds += 1;
         let before = layer.count();
         info.flips += simplify::flip_edges(layer);
+        simplify::smooth(layer);
         simplify::thicken(layer, target);
         info.collapses += simplify::collapse_edges(layer, params.prisms);
         if layer.count() as f64 > 0.999 * before as f64 && info.rounds > 3 {
