@@ -278,8 +278,8 @@ impl Prism {
                 [a[low], b[high], a[high]],
                 [b[low], b[high], a[high]],
             ] {
-                let is_supporting = points.iter().all(|&p| orient3d(wall[0], wall[1], wall[2], p) != Sign::Positive);
-                let is_plane = points.iter().any(|&p| orient3d(wall[0], wall[1], wall[2], p) == Sign::Negative);
+                let is_supporting = points.iter().all(|&p| side(wall, p) != Sign::Positive);
+                let is_plane = points.iter().any(|&p| side(wall, p) == Sign::Negative);
                 if is_supporting && is_plane {
                     walls.push(wall);
                 }
@@ -289,11 +289,17 @@ impl Prism {
     }
 }
 
+/// On which side of a plane a point lies. That its own three points lie in it is seen at once: the predicate is slowest
+/// for zero.
+fn side(plane: [Point; 3], point: Point) -> Sign {
+    if plane.contains(&point) { Sign::Zero } else { orient3d(plane[0], plane[1], plane[2], point) }
+}
+
 /// Whether a triangle lies on the closed positive side of a plane, and not all in it.
-fn is_outside([a, b, c]: [Point; 3], triangle: [Point; 3]) -> bool {
+fn is_outside(plane: [Point; 3], triangle: [Point; 3]) -> bool {
     let mut is_off = false;
     for p in triangle {
-        match orient3d(a, b, c, p) {
+        match side(plane, p) {
             Sign::Negative => return false,
             Sign::Zero => {}
             Sign::Positive => is_off = true,
