@@ -313,6 +313,9 @@ impl Exact {
         let mut found = BTreeSet::new();
         for corners in self.slabs().flat_map(|(cell, low)| self.decomposition(cell, low)) {
             let points = corners.map(|corner| self.at(corner).clone());
+            if are_apart(std::slice::from_ref(x), &points) {
+                continue;
+            }
             let volume =
                 |p: &[Rational; 4]| dot(&minus(&p[3], &p[0]), &normal(&[p[0].clone(), p[1].clone(), p[2].clone()]));
             let mut weights = BTreeMap::new();
@@ -365,7 +368,8 @@ impl Exact {
             let mut met = BTreeSet::new();
             for (low, k) in (0..6).map(|k| (k / 3, k % 3)) {
                 let segment = [point(low, &heights[k]), point(low, &heights[k + 1])];
-                for (c, triangle) in self.triangles.iter().enumerate() {
+                let near = |(_, triangle): &(usize, &[Rational; 3])| !are_apart(&segment, *triangle);
+                for (c, triangle) in self.triangles.iter().enumerate().filter(near) {
                     met.extend(within_triangle(&segment, triangle).into_iter().map(|p| (c, p)));
                 }
             }
