@@ -74,18 +74,34 @@ fn reversed(mesh: &SourceMesh<3>) -> SourceMesh<3> {
     surface(mesh.positions().to_vec(), &triangles)
 }
 
-/// A ring of steep roofs round one vertex, closed from below: no direction sees all their normals.
-fn pinwheel() -> SourceMesh<3> {
-    let blades = 6;
-    let mut positions = vec![[0.0, 0.0, 0.0], [0.0, 0.0, -1.0]];
-    for k in 0..2 * blades {
-        let angle = std::f64::consts::PI * f64::from(k) / f64::from(blades);
-        let height = if k % 2 == 0 { 0.9 } else { -0.5 };
-        positions.push([angle.cos(), angle.sin(), height]);
+/// Four cubes one after the other, twisted round the origin, where normals of all six directions meet: no direction
+/// sees them all.
+fn twisted_cubes() -> SourceMesh<3> {
+    let cubes = [[0, 0, 0], [-1, 0, 0], [-1, -1, 0], [-1, -1, -1]];
+    let mut numbers = std::collections::BTreeMap::new();
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    for (cube, axis, side) in
+        cubes.iter().flat_map(|cube| (0..3).flat_map(move |axis| [(cube, axis, 0), (cube, axis, 1)]))
+    {
+        let mut beyond = *cube;
+        beyond[axis] += 2 * side - 1;
+        if cubes.contains(&beyond) {
+            continue;
+        }
+        let mut number = |u: i32, v: i32| {
+            let mut corner = *cube;
+            corner[axis] += side;
+            corner[(axis + 1) % 3] += u;
+            corner[(axis + 2) % 3] += v;
+            *numbers.entry(corner).or_insert_with(|| {
+                positions.push(corner.map(f64::from));
+                positions.len() as u32 - 1
+            })
+        };
+        let [a, b, c, d] = [number(0, 0), number(1, 0), number(1, 1), number(0, 1)];
+        triangles.extend(if side == 1 { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
     }
-    let rim = |k: u32| 2 + k % (2 * blades as u32);
-    let triangles: Vec<[u32; 3]> =
-        (0..2 * blades as u32).flat_map(|k| [[0, rim(k), rim(k + 1)], [1, rim(k + 1), rim(k)]]).collect();
     surface(positions, &triangles)
 }
 
@@ -144,7 +160,7 @@ fn check_heights(shell: &Shell, step: usize) {
 
 #[test]
 fn the_first_shell_of_every_surface_is_bijective() {
-    for source in [torus(16, 9, 3.0), turned_box(4), pinwheel()] {
+    for source in [torus(16, 9, 3.0), turned_box(4), twisted_cubes()] {
         let shell = built(&source, 0);
         assert_eq!(shell.parts().prisms.len(), source.complex().cell_count());
         check_round_trips(&shell, 3);
@@ -154,7 +170,7 @@ fn the_first_shell_of_every_surface_is_bijective() {
 
 #[test]
 fn simplified_shells_are_bijective() {
-    for (source, most) in [(torus(32, 16, 5.0), 400), (turned_box(6), 300), (pinwheel(), 24)] {
+    for (source, most) in [(torus(32, 16, 5.0), 400), (turned_box(6), 300), (twisted_cubes(), 36)] {
         let shell = built(&source, 10);
         assert!(shell.parts().prisms.len() <= most, "{} prisms", shell.parts().prisms.len());
         check_round_trips(&shell, 7);
@@ -164,7 +180,7 @@ fn simplified_shells_are_bijective() {
 
 #[test]
 fn a_singular_vertex_is_pinched_and_maps_to_itself() {
-    let source = pinwheel();
+    let source = twisted_cubes();
     let (shell, info) = build(&source, &ShellParams::default(), &Silent).expect("a shell");
     assert_eq!(info.pinched, 1);
     let apex = exact([0.0; 3]);

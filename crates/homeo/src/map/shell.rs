@@ -134,15 +134,8 @@ impl Shell {
     /// # Errors
     /// When there is no such prism, a weight is negative, they do not add up to 1, or the height is not in `[-1, 1]`.
     pub fn unproject_exact(&self, at: &ShellPoint<Rational>) -> Result<ExactPoint, ShellEvaluationError> {
-        let zero = &Rational::ZERO;
-        let fits = at.weights.iter().all(|w| w >= zero)
-            && at.weights.iter().cloned().sum::<Rational>() == Rational::ONE
-            && at.height <= Rational::ONE
-            && at.height >= -Rational::ONE;
-        if !fits || at.prism as usize >= self.parts.prisms.len() {
-            return Err(ShellEvaluationError::NoSuchPoint);
-        }
-        let upper = at.height >= *zero;
+        self.check_point(at)?;
+        let upper = at.height >= Rational::ZERO;
         let height = if upper { at.height.clone() } else { &at.height + &Rational::ONE };
         let slab = 2 * at.prism as usize + usize::from(upper);
         // How much of each column's weight is at its high point: the columns with the largest numbers rise first.
@@ -222,9 +215,7 @@ impl Shell {
 
     /// The corners of the pillar line through a point, from bottom to top; one point where it has no length.
     fn fibre(&self, at: &ShellPoint<Rational>) -> Result<Vec<ExactPoint>, ShellEvaluationError> {
-        if at.prism as usize >= self.parts.prisms.len() {
-            return Err(ShellEvaluationError::NoSuchPoint);
-        }
+        self.check_point(at)?;
         let lifted = self.lifted(at);
         if lifted.is_zero() {
             return Ok(vec![self.unproject_exact(&ShellPoint { height: Rational::ZERO, ..at.clone() })?]);
@@ -239,6 +230,15 @@ impl Shell {
         let heights: Vec<Rational> = lower.chain(heights.iter().skip(1).cloned()).collect();
         let point = |height| self.unproject_exact(&ShellPoint { prism: at.prism, weights: at.weights.clone(), height });
         heights.into_iter().map(point).collect()
+    }
+
+    /// Whether there is such a prism, the weights are possible, and the height is in range.
+    fn check_point(&self, at: &ShellPoint<Rational>) -> Result<(), ShellEvaluationError> {
+        let fits = (at.prism as usize) < self.parts.prisms.len()
+            && at.weights.iter().all(|w| *w >= Rational::ZERO)
+            && at.weights.iter().cloned().sum::<Rational>() == Rational::ONE
+            && (-Rational::ONE..=Rational::ONE).contains(&at.height);
+        if fits { Ok(()) } else { Err(ShellEvaluationError::NoSuchPoint) }
     }
 
     /// The positions, in a prism, of its columns in ascending order of their numbers.
