@@ -105,6 +105,15 @@ fn twisted_cubes() -> SourceMesh<3> {
     surface(positions, &triangles)
 }
 
+/// A bent tube with two boundary loops.
+fn half_torus() -> SourceMesh<3> {
+    let whole = torus(20, 12, 3.0);
+    let inside = |cell: &&[homeo_core::mesh::VertexId; 3]| cell.iter().all(|v| whole.positions()[v.index()][0] > -0.2);
+    let triangles: Vec<[u32; 3]> =
+        whole.complex().cells().iter().filter(inside).map(|cell| cell.map(|v| v.raw())).collect();
+    surface(whole.positions().to_vec(), &triangles)
+}
+
 fn exact(point: Point) -> [Rational; 3] {
     point.map(|x| Rational::from_f64(x).expect("finite"))
 }
@@ -160,7 +169,7 @@ fn check_heights(shell: &Shell, step: usize) {
 
 #[test]
 fn the_first_shell_of_every_surface_is_bijective() {
-    for source in [torus(16, 9, 3.0), turned_box(4), twisted_cubes()] {
+    for source in [torus(16, 9, 3.0), turned_box(4), twisted_cubes(), half_torus()] {
         let shell = built(&source, 0);
         assert_eq!(shell.parts().prisms.len(), source.complex().cell_count());
         check_round_trips(&shell, 3);
@@ -170,7 +179,8 @@ fn the_first_shell_of_every_surface_is_bijective() {
 
 #[test]
 fn simplified_shells_are_bijective() {
-    for (source, most) in [(torus(32, 16, 5.0), 400), (turned_box(6), 300), (twisted_cubes(), 36)] {
+    for (source, most) in [(torus(32, 16, 5.0), 400), (turned_box(6), 300), (twisted_cubes(), 36), (half_torus(), 150)]
+    {
         let shell = built(&source, 10);
         assert!(shell.parts().prisms.len() <= most, "{} prisms", shell.parts().prisms.len());
         check_round_trips(&shell, 7);
@@ -213,8 +223,9 @@ fn a_wanted_number_of_prisms_ends_the_simplification() {
 
 #[test]
 fn what_has_no_shell_is_refused() {
-    let open = surface(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
-    assert_eq!(build(&open, &ShellParams::default(), &Silent).err(), Some(ShellError::Open(3)));
+    let nearly_closed = [[0, 1, 2], [0, 2, 1]];
+    let folded = surface(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &nearly_closed);
+    assert!(matches!(build(&folded, &ShellParams::default(), &Silent), Err(ShellError::Stuck { .. })));
     let thin = ShellParams { thickness: 0.0, ..ShellParams::default() };
     assert_eq!(build(&torus(8, 6, 0.0), &thin, &Silent).err(), Some(ShellError::Thickness));
 }

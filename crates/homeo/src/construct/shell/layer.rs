@@ -1,5 +1,7 @@
 //! A shell under construction: columns, prisms, and which source triangles each prism may contain.
 
+use std::collections::HashSet;
+
 use homeo_core::predicate::{Sign, crossing_sign, orient3d, share_area, triangles_meet, triangles_meet_beyond_vertex};
 use homeo_core::spatial::{Aabb, Tree};
 
@@ -47,6 +49,28 @@ impl Surface {
         self.tree.query_box(&Aabb::of(&cap), |t| is_clear = is_clear && apart(self.corners[t]));
         is_clear
     }
+
+    /// L3 for a wall triangle over a boundary edge, counter-clockwise from outside: the surface meets it in common corners
+    /// and the common edge only, and lies inside at that edge.
+    fn is_inside_of(&self, wall: [Point; 3]) -> bool {
+        let fits = |triangle: [Point; 3]| {
+            let common: Vec<[usize; 2]> =
+                (0..3).flat_map(|k| (0..3).map(move |l| [k, l])).filter(|&[k, l]| wall[k] == triangle[l]).collect();
+            match common[..] {
+                [] => !triangles_meet(wall, triangle),
+                [[k, l]] => !triangles_meet_beyond_vertex(
+                    wall[k],
+                    [wall[(k + 1) % 3], wall[(k + 2) % 3]],
+                    [triangle[(l + 1) % 3], triangle[(l + 2) % 3]],
+                ),
+                [[_, l], [_, m]] => side(wall, triangle[3 - l - m]) == Sign::Negative,
+                _ => false,
+            }
+        };
+        let mut is_inside = true;
+        self.tree.query_box(&Aabb::of(&wall), |t| is_inside = is_inside && fits(self.corners[t]));
+        is_inside
+    }
 }
 
 /// See the module's documentation.
@@ -56,6 +80,10 @@ pub(super) struct Layer {
     pub prisms: Vec<[u32; 3]>,
     /// Whether each prism still exists.
     pub exists: Vec<bool>,
+    /// Edges of prisms on the boundary of the surface, in the prisms' direction.
+    boundary: HashSet<[u32; 2]>,
+    /// Columns on the boundary, which stay as they are.
+    pub is_frozen: Vec<bool>,
     /// The prisms at each column.
     pub around: Vec<Vec<u32>>,
     /// For each prism all source triangles with which it has an area in common, and perhaps others near it, ascending.
@@ -74,14 +102,28 @@ pub(super) enum Failure {
     Cap,
     /// L4: a pillar crosses a triangle the wrong way.
     Crossing,
+    /// L3: a wall over the boundary meets the surface off its edge.
+    Wall,
 }
 
 impl Layer {
     /// The layer of the given columns over the triangles of the source, nothing checked yet.
     pub fn new(source: &SourceMesh<3>, columns: Vec<Column>) -> Self {
         let prisms: Vec<[u32; 3]> = source.complex().cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
+        let mut boundary: HashSet<[u32; 2]> = prisms.iter().flat_map(|&p| sides(p)).collect();
+        let all: Vec<[u32; 2]> = boundary.iter().copied().collect();
+        for [a, b] in all {
+            if boundary.contains(&[b, a]) {
+                boundary.remove(&[a, b]);
+                boundary.remove(&[b, a]);
+            }
+        }
+        let mut is_frozen = vec![false; columns.len()];
+        boundary.iter().flatten().for_each(|&v| is_frozen[v as usize] = true);
         Self {
             surface: Surface::new(source),
+            boundary,
+            is_frozen,
             columns,
             exists: vec![true; prisms.len()],
             around: triangles_around(source.complex()),
@@ -102,8 +144,14 @@ impl Layer {
 
     /// Finds the contents of a prism among all source triangles and checks everything (L2 to L4).
     pub fn fill(&mut self, prism: u32) -> Result<(), FailureIn> {
-        let body = self.prism(self.prisms[prism as usize]);
+        let corners = self.prisms[prism as usize];
+        let body = self.prism(corners);
         body.check(&self.surface)?;
+        for (k, side) in sides(corners).into_iter().enumerate() {
+            if self.boundary.contains(&side) {
+                body.check_wall(&self.surface, k)?;
+            }
+        }
         let mut near = Vec::new();
         self.surface.tree.query_box(&Aabb::of(body.columns.as_flattened()), |t| near.push(t as u32));
         near.sort_unstable();
@@ -221,6 +269,25 @@ impl Prism {
         (0..2).find(|slab| !holds(2 * slab)).map_or(Ok(()), |slab| Err((Failure::Cap, slab)))
     }
 
+    /// L3 for the wall over the side from column `k` to the next, in the boundary.
+    fn check_wall(&self, surface: &Surface, k: usize) -> Result<(), FailureIn> {
+        for (number, slab) in SLABS.into_iter().enumerate() {
+            for wall in self.wall(slab, k) {
+                let has_repeated = wall[0] == wall[1] || wall[1] == wall[2] || wall[2] == wall[0];
+                if !has_repeated && !surface.is_inside_of(wall) {
+                    return Err((Failure::Wall, number));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The triangles with three corners of the side of a slab from column `k` to the next, counter-clockwise from outside.
+    fn wall(&self, [low, high]: [usize; 2], k: usize) -> [[Point; 3]; 4] {
+        let (a, b) = (self.columns[k], self.columns[(k + 1) % 3]);
+        [[a[low], b[low], b[high]], [a[low], b[low], a[high]], [a[low], b[high], a[high]], [b[low], b[high], a[high]]]
+    }
+
     /// All tetrahedra of a slab in any order of the columns: a pillar and a point of each other column.
     fn tetrahedra(&self, [low, high]: [usize; 2]) -> impl Iterator<Item = [Point; 4]> + '_ {
         (0..3).filter(|&i| !self.pinched[i]).flat_map(move |i| {
@@ -266,27 +333,19 @@ impl Prism {
     }
 
     /// Planes through sides of a slab with all of it on their negative side.
-    fn outer_walls(&self, [low, high]: [usize; 2]) -> Vec<[Point; 3]> {
-        let points: Vec<Point> = self.columns.iter().flat_map(|column| [column[low], column[high]]).collect();
-        let mut walls = Vec::with_capacity(12);
-        for i in 0..3 {
-            let (a, b) = (self.columns[i], self.columns[(i + 1) % 3]);
-            // Seen from outside, low points of a and b and then high ones run counter-clockwise.
-            for wall in [
-                [a[low], b[low], b[high]],
-                [a[low], b[low], a[high]],
-                [a[low], b[high], a[high]],
-                [b[low], b[high], a[high]],
-            ] {
-                let is_supporting = points.iter().all(|&p| side(wall, p) != Sign::Positive);
-                let is_plane = points.iter().any(|&p| side(wall, p) == Sign::Negative);
-                if is_supporting && is_plane {
-                    walls.push(wall);
-                }
-            }
-        }
-        walls
+    fn outer_walls(&self, slab: [usize; 2]) -> Vec<[Point; 3]> {
+        let points: Vec<Point> = self.columns.iter().flat_map(|column| slab.map(|level| column[level])).collect();
+        let is_outer = |wall: &[Point; 3]| {
+            points.iter().all(|&p| side(*wall, p) != Sign::Positive)
+                && points.iter().any(|&p| side(*wall, p) == Sign::Negative)
+        };
+        (0..3).flat_map(|k| self.wall(slab, k)).filter(is_outer).collect()
     }
+}
+
+/// The sides of a triangle, as pairs of corners in its direction.
+fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
 }
 
 /// On which side of a plane a point lies. That its own three points lie in it is seen at once: the predicate is slowest

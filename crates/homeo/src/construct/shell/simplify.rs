@@ -57,7 +57,7 @@ pub(super) fn collapse_edges(layer: &mut Layer, enough: usize) -> usize {
 
 /// Moves column `gone` into its neighbour `kept`, if the shell stays valid.
 fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
-    if layer.is_pinched(gone) || !is_link_fit(layer, gone, kept) {
+    if !is_free(layer, gone) || !is_link_fit(layer, gone, kept) {
         return false;
     }
     let old = layer.around[gone as usize].clone();
@@ -69,6 +69,11 @@ fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
         return false;
     }
     layer.replace(&old, &new).is_ok()
+}
+
+/// Whether a column may be changed: not on the boundary, and of some length.
+fn is_free(layer: &Layer, column: u32) -> bool {
+    !layer.is_frozen[column as usize] && !layer.is_pinched(column)
 }
 
 /// The link condition: the two columns exist, and share just the two neighbours opposite their edge.
@@ -115,7 +120,7 @@ fn flip(layer: &mut Layer, prism: u32, side: usize) -> bool {
 pub(super) fn thicken(layer: &mut Layer, target: f64) -> usize {
     let mut grown = 0;
     for column in 0..layer.columns.len() as u32 {
-        if layer.around[column as usize].is_empty() || layer.is_pinched(column) {
+        if layer.around[column as usize].is_empty() || !is_free(layer, column) {
             continue;
         }
         let neighbours = layer.neighbours(column);
@@ -134,7 +139,7 @@ pub(super) fn thicken(layer: &mut Layer, target: f64) -> usize {
 pub(super) fn smooth(layer: &mut Layer) -> usize {
     let mut moved = 0;
     for column in 0..layer.columns.len() as u32 {
-        if layer.around[column as usize].is_empty() || layer.is_pinched(column) {
+        if layer.around[column as usize].is_empty() || !is_free(layer, column) {
             continue;
         }
         let neighbours = layer.neighbours(column);
