@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use homeo_core::predicate::{Sign, crossing_sign, orient3d, share_area, triangles_meet, triangles_meet_beyond_vertex};
 use homeo_core::spatial::{Aabb, Tree};
+use rayon::prelude::*;
 
 use super::directions::{dot, minus, triangles_around};
 use crate::input::SourceMesh;
@@ -13,6 +14,9 @@ type Point = [f64; 3];
 
 /// Bottom, middle and top of a column.
 pub(super) type Column = [Point; 3];
+
+/// With fewer pairs of triangles and prisms than this, one thread is faster than several.
+const WORTH_SHARING: usize = 400;
 
 /// Lower and upper slab, as the levels of their low and high points.
 const SLABS: [[usize; 2]; 2] = [[0, 1], [1, 2]];
@@ -169,8 +173,12 @@ impl Layer {
         let mut held: Vec<u32> = old.iter().flat_map(|&p| self.contents[p as usize].iter().copied()).collect();
         held.sort_unstable();
         held.dedup();
-        let contents: Vec<Vec<u32>> =
-            bodies.iter().map(|body| body.contents(&self.surface, &held)).collect::<Result<_, _>>()?;
+        let find = |body: &Prism| body.contents(&self.surface, &held);
+        let contents: Vec<Vec<u32>> = if held.len() * bodies.len() < WORTH_SHARING {
+            bodies.iter().map(find).collect::<Result<_, _>>()?
+        } else {
+            bodies.par_iter().map(find).collect::<Result<_, _>>()?
+        };
         bodies.iter().try_for_each(|body| body.check_caps(&self.surface))?;
         for &prism in old {
             for column in self.prisms[prism as usize] {
