@@ -110,6 +110,8 @@ pub fn build(
     progress.stage("simplify");
     simplify(&mut layer, params, target, progress, &mut info)?;
     info.prisms = layer.count();
+    // What the operations kept up piece by piece, from scratch.
+    debug_assert!((0..layer.prisms.len() as u32).all(|p| !layer.exists[p as usize] || layer.fill(p).is_ok()));
     Ok((Shell::from_parts(source.clone(), layer.into_parts()), info))
 }
 
@@ -215,9 +217,9 @@ fn simplify(
         info.rounds += 1;
         let before = layer.count();
         info.flips += simplify::flip_edges(layer);
-        simplify::smooth(layer);
+        simplify::smooth(layer, progress);
         simplify::thicken(layer, target);
-        info.collapses += simplify::collapse_edges(layer, params.prisms);
+        info.collapses += simplify::collapse_edges(layer, params.prisms, progress);
         if layer.count() as f64 > 0.999 * before as f64 && info.rounds > 3 {
             break;
         }

@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::directions::{dot, minus};
 use super::layer::{Layer, area_and_sides};
+use crate::progress::Progress;
 
 /// Middle triangles with a larger energy are not made, unless there were such before.
 const LARGEST_ENERGY: f64 = 30.0;
@@ -24,8 +25,9 @@ fn squared_length(layer: &Layer, a: u32, b: u32) -> f64 {
     edge.iter().map(|x| x * x).sum()
 }
 
-/// Collapses edges, the shortest first, until none can be or `enough` prisms are left. Returns how many were.
-pub(super) fn collapse_edges(layer: &mut Layer, enough: usize) -> usize {
+/// Collapses edges, the shortest first, until none can be, `enough` prisms are left or the work is cancelled. Returns
+/// how many were.
+pub(super) fn collapse_edges(layer: &mut Layer, enough: usize, progress: &dyn Progress) -> usize {
     let mut queue = BinaryHeap::new();
     let push = |layer: &Layer, queue: &mut BinaryHeap<_>, a: u32, b: u32| {
         let (a, b) = (a.min(b), a.max(b));
@@ -39,7 +41,7 @@ pub(super) fn collapse_edges(layer: &mut Layer, enough: usize) -> usize {
     let mut prisms = layer.count();
     let mut collapsed = 0;
     while let Some(Reverse((_, a, b))) = queue.pop() {
-        if prisms <= enough {
+        if prisms <= enough || progress.is_cancelled() {
             break;
         }
         let Some(kept) = [(a, b), (b, a)].into_iter().find(|&(gone, kept)| collapse(layer, gone, kept)) else {
@@ -136,9 +138,12 @@ pub(super) fn thicken(layer: &mut Layer, target: f64) -> usize {
 
 /// Moves columns towards the middle of their neighbours where that lowers the worst energy round them, and turns
 /// them towards their neighbours' directions. Returns how many moved.
-pub(super) fn smooth(layer: &mut Layer) -> usize {
+pub(super) fn smooth(layer: &mut Layer, progress: &dyn Progress) -> usize {
     let mut moved = 0;
     for column in 0..layer.columns.len() as u32 {
+        if progress.is_cancelled() {
+            break;
+        }
         if layer.around[column as usize].is_empty() || !is_free(layer, column) {
             continue;
         }
