@@ -135,7 +135,7 @@ fn rules_s1_and_s2() {
 }
 
 #[test]
-fn rule_l1_closed_oriented_surfaces() {
+fn rule_l1_oriented_surfaces() {
     let mut flipped = named("octahedron");
     flipped.source_cells[3].swap(0, 1);
     assert_refuted(&flipped, "L1", "same side");
@@ -145,10 +145,10 @@ fn rule_l1_closed_oriented_surfaces() {
     assert!(witness.cells.contains(&(8 + 3)) && witness.points.len() == 2, "{witness:?}");
     let mut open = named("octahedron");
     open.source_cells.pop();
-    assert_refuted(&open, "L1", "source: an edge");
+    assert_refuted(&open, "L1", "source: a boundary edge is none");
     let mut open = named("octahedron");
     open.prisms.pop();
-    assert_refuted(&open, "L1", "middle surface: an edge");
+    assert_refuted(&open, "L1", "middle surface: a boundary edge is none");
     let mut three = named("octahedron");
     three.source_cells.push(vec![0, 2, 1]);
     assert_refuted(&three, "L1", "share");
