@@ -363,7 +363,7 @@ fn is_surface(cells: &[Vec<u32>], count: usize) -> bool {
 }
 
 /// Directed edges without the opposite ones.
-fn boundary(cells: &[Vec<u32>]) -> Vec<[u32; 2]> {
+pub fn boundary(cells: &[Vec<u32>]) -> Vec<[u32; 2]> {
     let directed = directed_edges(cells);
     directed.iter().copied().filter(|&[a, b]| !directed.contains(&[b, a])).collect()
 }
