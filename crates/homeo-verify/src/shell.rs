@@ -7,6 +7,9 @@
 //! A *corner* is a point of a column: its number and its level, 0 bottom, 1 middle, 2 top. A pinched column has
 //! level 0 only. Slab `2 q` is the lower, slab `2 q + 1` the upper half of prism `q`. Witnesses count prisms after the
 //! triangles, and columns after the vertices of the source.
+//!
+//! Surfaces may have boundary edges, which both have in common. A directed boundary edge is known by its slot; as no two
+//! boundary vertices are at one point, also by the point where it starts.
 
 use crate::complex::{Complex, UnionFind};
 use crate::links::check_manifold;
@@ -21,17 +24,22 @@ use crate::triangles::{
 use crate::verdict::{Checked, Stop, check, decidable, refuted};
 use dashu_int::IBig;
 use std::cmp::{Ordering, Reverse};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A point of a column.
 type Corner = (u32, usize);
 
-/// The source `T` and the prisms over `M`, both closed oriented surfaces.
+/// The boundary edges of a surface by the bits of the point where they start: those of the end, and the slot.
+type Boundary = BTreeMap<[u64; 3], ([u64; 3], usize)>;
+
+/// The source `T` and the prisms over `M`, both oriented surfaces.
 struct Shell<'a> {
     positions: &'a [Point],
     source: Complex,
     levels: &'a [Vec<Point>; 3],
     prisms: Complex,
+    /// The boundary edges, as slots of the source and of the prisms.
+    boundary: Vec<[usize; 2]>,
     /// The boxes of the source's triangles.
     triangles: BoxTree,
 }
@@ -49,30 +57,61 @@ pub(crate) fn check_shell(map: &MapFile, data: &ShellData) -> Checked<Vec<(&'sta
     let levels = &data.levels;
     levels.iter().try_for_each(|level| check_finite(level)).map_err(counted_after_source)?;
     let prisms = check_surface(&data.prisms, levels[0].len(), "middle surface").map_err(counted_after_source)?;
+    let of_source = boundary_by_points(&source, &map.positions, "source")?;
+    let of_middle = boundary_by_points(&prisms, &levels[1], "middle surface").map_err(counted_after_source)?;
+    check_included(&of_source, &of_middle, &source, "source")?;
+    check_included(&of_middle, &of_source, &prisms, "middle surface").map_err(counted_after_source)?;
+    let boundary = of_source.values().zip(of_middle.values()).map(|(a, b)| [a.1, b.1]).collect();
     let boxes: Vec<_> = source.cells().map(|cell| bounds(&corners(cell))).collect();
     let triangles = BoxTree::new(&boxes);
-    let shell = Shell { positions: &map.positions, source, levels, prisms, triangles };
+    let shell = Shell { positions: &map.positions, source, levels, prisms, boundary, triangles };
     Ok(vec![
         ("vertices and columns with finite coordinates (rule S1)", (map.positions.len() + levels[0].len()) as u64),
-        ("triangles of the source, a closed oriented surface (rules S2, L1)", shell.source.count() as u64),
-        ("prisms over the middle, a closed oriented surface (rules S2, L1)", shell.prisms.count() as u64),
+        ("triangles of the source, an oriented surface (rules S2, L1)", shell.source.count() as u64),
+        ("prisms over the middle, an oriented surface (rules S2, L1)", shell.prisms.count() as u64),
+        ("boundary edges that both surfaces have (rule L1)", shell.boundary.len() as u64),
         ("positive tetrahedra (rule L2)", shell.check_tetrahedra()?),
         ("bottom and top triangles that the source avoids (rule L3)", shell.check_bottom_and_top()?),
+        ("wall triangles over boundary edges that the source keeps inside of (rule L3)", shell.check_walls()?),
         ("slabs whose pillars cross the source in the positive sense (rule L4)", shell.check_pillars()?),
         ("components of the source with a point that the shell covers once (rule L5)", shell.check_preimages()?),
         ("components of the middle with a fibre that meets the source once (rule L6)", shell.check_fibres()?),
     ])
 }
 
-/// S2 and L1: indices, and a closed oriented surface by its links.
+/// S2 and L1: indices, and an oriented surface by its links.
 fn check_surface(cells: &[u32], vertex_count: usize, what: &str) -> Checked<Complex> {
     let surface = Complex::new(3, cells.to_vec(), vertex_count, ["S2", "L1"])?;
-    if let Some(slot) = surface.boundary_slots().next() {
-        return Err(refuted("L1", format!("{what}: an edge has one triangle"), &[slot / 3], &surface.facet(slot)));
-    }
     surface.check_sides("L1", |_, _| true, |_| true)?;
     check_manifold(&surface, what, "L1")?;
     Ok(surface)
+}
+
+/// The ends of an edge in the direction of its triangle.
+fn edge(surface: &Complex, slot: usize) -> [u32; 2] {
+    [1, 2].map(|i| surface.cell(slot / 3)[(slot + i) % 3])
+}
+
+/// L1: no two boundary vertices are at one point. In a surface by links, each of them starts one boundary edge.
+fn boundary_by_points(surface: &Complex, points: &[Point], what: &str) -> Checked<Boundary> {
+    let mut boundary = Boundary::new();
+    for slot in surface.boundary_slots() {
+        let [start, end] = edge(surface, slot).map(|v| points[v as usize].map(|x| (x + 0.0).to_bits())); // 0 for -0
+        if let Some((_, other)) = boundary.insert(start, (end, slot)) {
+            let message = format!("{what}: two vertices of the boundary are at the same point");
+            let vertices = [other, slot].map(|slot| edge(surface, slot)[0]);
+            return Err(refuted("L1", message, &[other / 3, slot / 3], &vertices));
+        }
+    }
+    Ok(boundary)
+}
+
+/// L1: the boundary edges of a surface are some of those of the other surface.
+fn check_included(boundary: &Boundary, other: &Boundary, surface: &Complex, what: &str) -> Checked {
+    let is_missing = |(start, (end, _)): &(&_, &([u64; 3], usize))| other.get(*start).is_none_or(|e| e.0 != *end);
+    let Some((_, &(_, slot))) = boundary.iter().find(is_missing) else { return Ok(()) };
+    let message = format!("{what}: a boundary edge is none of the other surface");
+    Err(refuted("L1", message, &[slot / 3], &edge(surface, slot)))
 }
 
 /// The witness with the numbers that prisms and columns have behind the source's triangles and vertices.
@@ -188,6 +227,41 @@ impl Shell<'_> {
             }
         }
         Ok(2 * self.prisms.count() as u64)
+    }
+
+    /// L3: source triangles lie inside of the walls over boundary edges and meet them in common vertices and edges only.
+    /// Returns the number of wall triangles.
+    fn check_walls(&self) -> Checked<u64> {
+        const MEETS: &str = "a triangle of the source meets the wall over a boundary edge";
+        const LEAVES: &str = "a triangle of the source does not lie inside of the wall over its boundary edge";
+        let mut count = 0;
+        for &[slot, prism_slot] in &self.boundary {
+            let ([v, w], [i, j]) = (edge(&self.source, slot), edge(&self.prisms, prism_slot));
+            let third = self.triangle(slot / 3)[slot % 3];
+            for low in [0, 1] {
+                let side = [(i, low), (i, low + 1), (j, low + 1), (j, low)].map(|corner| self.point(corner));
+                let walls = [0, 1, 2, 3].map(|n| [1, 2, 3].map(|k| side[(n + k) % 4])); // anticlockwise from inside
+                for wall in walls.iter().filter(|[a, b, c]| a != b && b != c && c != a) {
+                    count += 1;
+                    for c in self.triangles.meeting(&bounds(wall)) {
+                        let (cell, triangle) = (self.source.cell(c), self.triangle(c));
+                        let ends = [v, w].into_iter().filter(|end| cell.contains(end));
+                        let common = ends.map(|end| self.positions[end as usize]).filter(|p| wall.contains(p));
+                        let common: Vec<Point> = common.collect();
+                        let (is_allowed, message) = match common[..] {
+                            // The triangle at the edge; strictly inside, it meets the wall in nothing else.
+                            [_, _] => (orientation_3d(wall[0], wall[1], wall[2], third) == Ordering::Greater, LEAVES),
+                            [p] => (!triangles_meet_beyond(p, &triangle, wall), MEETS),
+                            _ => (!triangles_meet(&triangle, wall), MEETS),
+                        };
+                        if !is_allowed {
+                            return Err(self.refuted_between("L3", message, c, prism_slot / 3));
+                        }
+                    }
+                }
+            }
+        }
+        Ok(count)
     }
 
     /// L4: pillars cross the source triangles that have an area in the slab from below. Returns the number of slabs.

@@ -7,7 +7,10 @@ use homeo_verify::{Verdict, Witness, verify_bytes};
 use serde_json::json;
 use std::collections::BTreeMap;
 use support::random::Random;
-use support::shells::{all_shells, around, icosphere, is_valid, joined, octahedron, shell, tetrahedron, turned};
+use support::shells::{
+    all_shells, around, bare_hexagon, boundary, closed_shells, hexagon, icosphere, is_valid, joined, octahedron,
+    open_shells, over_plane, shell, starred, tetrahedron, triangle, turned,
+};
 use support::{Map, write};
 
 #[test]
@@ -17,6 +20,7 @@ fn all_valid_shells_are_certified() {
             Ok(Verdict::Certified(claim)) => {
                 assert_eq!([&claim.kind[..], &claim.target], ["shell"; 2], "{name}");
                 assert!(claim.statement.contains("theorem on shells, rules L1-L6"), "{}", claim.statement);
+                assert!(!format!("{claim:?}").contains("closed"), "{claim:?}");
             }
             other => panic!("{name}: {other:?}"),
         }
@@ -54,7 +58,11 @@ fn unused_vertices_and_columns_are_ignored() {
 }
 
 fn small_shells() -> Vec<(&'static str, Map)> {
-    all_shells().into_iter().filter(|(_, map)| map.prisms.len() <= 20 && map.source_cells.len() <= 32).collect()
+    all_shells().into_iter().filter(|(_, map)| is_small(map)).collect()
+}
+
+fn is_small(map: &Map) -> bool {
+    map.prisms.len() <= 20 && map.source_cells.len() <= 32
 }
 
 fn named(name: &str) -> Map {
@@ -135,7 +143,7 @@ fn rules_s1_and_s2() {
 }
 
 #[test]
-fn rule_l1_closed_oriented_surfaces() {
+fn rule_l1_oriented_surfaces() {
     let mut flipped = named("octahedron");
     flipped.source_cells[3].swap(0, 1);
     assert_refuted(&flipped, "L1", "same side");
@@ -145,10 +153,10 @@ fn rule_l1_closed_oriented_surfaces() {
     assert!(witness.cells.contains(&(8 + 3)) && witness.points.len() == 2, "{witness:?}");
     let mut open = named("octahedron");
     open.source_cells.pop();
-    assert_refuted(&open, "L1", "source: an edge");
+    assert_refuted(&open, "L1", "source: a boundary edge is none");
     let mut open = named("octahedron");
     open.prisms.pop();
-    assert_refuted(&open, "L1", "middle surface: an edge");
+    assert_refuted(&open, "L1", "middle surface: a boundary edge is none");
     let mut three = named("octahedron");
     three.source_cells.push(vec![0, 2, 1]);
     assert_refuted(&three, "L1", "share");
@@ -165,6 +173,43 @@ fn rule_l1_closed_oriented_surfaces() {
     let mut glued = named("two that overlap");
     glue(&mut glued.prisms);
     assert_eq!(assert_refuted(&glued, "L1", "not connected").vertices, [10]);
+}
+
+#[test]
+fn rule_l1_common_boundary() {
+    let h = hexagon(1);
+    for (v, axis) in [(0, 0), (1, 1), (3, 2)] {
+        let mut moved = named("hexagon");
+        moved.levels[1][v][axis] = moved.levels[1][v][axis].next_up();
+        assert_refuted(&moved, "L1", "is none of the other surface");
+    }
+    let mut negative_zero = named("hexagon");
+    (negative_zero.positions[0][1], negative_zero.levels[1][0][2]) = (-0.0, -0.0);
+    assert!(matches!(verify_bytes(&negative_zero.signed_bytes()), Ok(Verdict::Certified(_))));
+    let mut split = h.clone();
+    split.0.push([3.0, 1.5, 0.25]);
+    split.1[0] = [0, 7, 6];
+    split.1.push([7, 1, 6]);
+    assert!(matches!(verify_bytes(&over_plane(&split, &split, [-2.0, 2.0]).bytes()), Ok(Verdict::Certified(_))));
+    assert_refuted(&over_plane(&split, &h, [-2.0, 2.0]), "L1", "source: a boundary edge is none");
+    assert_refuted(&over_plane(&h, &split, [-2.0, 2.0]), "L1", "source: a boundary edge is none");
+    let two = joined(&h, &h, [20.0, 0.0, 0.0]);
+    let witness = assert_refuted(&over_plane(&h, &two, [-2.0, 2.0]), "L1", "middle surface: a boundary edge is none");
+    assert!(witness.cells[0] >= 12 && witness.vertices.iter().all(|v| *v >= 14), "{witness:?}");
+    let mut turned_over = named("hexagon");
+    turned_over.source_cells.iter_mut().for_each(|cell| cell.swap(0, 1));
+    assert_refuted(&turned_over, "L1", "source: a boundary edge is none");
+    let touching = joined(&h, &h, [8.0, 0.0, 0.25]);
+    let witness = assert_refuted(&over_plane(&touching, &touching, [-2.0, 2.0]), "L1", "source: two vertices");
+    assert_eq!(witness.vertices, [0, 7 + 3]);
+    let witness = assert_refuted(&over_plane(&h, &touching, [-2.0, 2.0]), "L1", "middle surface: two vertices");
+    assert_eq!(witness.vertices, [7, 7 + 7 + 3]);
+    let mut fans = named("hexagon");
+    fans.source_cells = vec![fans.source_cells[0].clone(), fans.source_cells[3].clone()];
+    assert_eq!(assert_refuted(&fans, "L1", "not connected").vertices, [6]);
+    let mut strip = named("hexagon");
+    strip.source_cells = [[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 0, 4], [4, 0, 1]].map(|cell| cell.to_vec()).to_vec();
+    assert_refuted(&strip, "L1", "same side"); // one-sided
 }
 
 #[test]
@@ -207,6 +252,50 @@ fn rule_l3_source_between_bottom_and_top() {
     same_level.levels[2][0] = vec![0.999, 0., 0.];
     same_level.levels[1][0] = vec![0.9, 0., 0.];
     assert_refuted(&same_level, "L3", "meets"); // beyond the pinched corner
+}
+
+#[test]
+fn rule_l3_source_inside_of_walls() {
+    let (h, t) = (hexagon(1), triangle());
+    let fine = over_plane(&hexagon(2), &bare_hexagon(), [-2.0, 2.0]);
+    let with = |v: usize, point: [f64; 3]| {
+        let mut map = fine.clone();
+        map.positions[v] = point.to_vec();
+        map
+    };
+    // Through a wall: triangles without vertices on the boundary, and with one.
+    assert!(assert_refuted(&with(12, [5.0, 5.0, 0.5]), "L3", "meets the wall").vertices.contains(&12));
+    assert!(assert_refuted(&with(7, [4.0, 2.5, 0.5]), "L3", "meets the wall").vertices.contains(&7));
+    // Only up to the wall: inside a wall triangle, in the edge, in an end of the edge.
+    for point in [[3.0, 1.5, 1.0], [3.0, 1.5, 0.25], [-4.0, 0.0, -0.25]] {
+        assert!(assert_refuted(&with(12, point), "L3", "meets the wall").vertices.contains(&12));
+    }
+    // The triangle at the edge upright, in the plane of the wall, above or below.
+    for z in [1.0, -1.0] {
+        let mut upright = over_plane(&starred(&h), &h, [-2.0, 2.0]);
+        upright.positions[7] = vec![3.0, 1.5, z];
+        assert_eq!(assert_refuted(&upright, "L3", "does not lie inside").cells, [0, 18]);
+    }
+    // A wall that leans over the surface: x + 2 y = 4 - z over the edge from 0 to 1.
+    for (level, height) in [(2, 3.0), (0, -3.0)] {
+        let mut leaning = over_plane(&starred(&t), &t, [-3.0, 3.0]);
+        leaning.levels[level].iter_mut().for_each(|p| (0..2).for_each(|x| p[x] *= 0.25));
+        leaning.positions[3] = vec![1.0, 1.0, 0.25 * height];
+        leaning.sign();
+        assert!(matches!(verify_bytes(&leaning.bytes()), Ok(Verdict::Certified(_))));
+        leaning.positions[3][2] = 0.5 * height;
+        assert_eq!(assert_refuted(&leaning, "L3", "does not lie inside").cells, [0, 3]);
+    }
+    // Leaning away it is no obstacle.
+    let mut away = over_plane(&starred(&t), &t, [-3.0, 3.0]);
+    [0, 2].iter().for_each(|&level| away.levels[level].iter_mut().for_each(|p| (0..2).for_each(|x| p[x] *= 2.0)));
+    assert!(matches!(verify_bytes(&away.signed_bytes()), Ok(Verdict::Certified(_))));
+    // Over a pinched column the walls are triangles.
+    let mut pinched = named("hexagon, pinched at the boundary");
+    pinched.positions[6] = vec![3.0, 1.5, 0.25];
+    assert_refuted(&pinched, "L1", "area zero");
+    pinched.positions[6] = vec![3.0, 1.5, 0.375];
+    assert_refuted(&pinched, "L3", "does not lie inside");
 }
 
 #[test]
@@ -290,6 +379,7 @@ fn surfaces_that_touch_in_a_pinched_corner() {
 // Mutations.
 
 const MUTANTS: usize = 3500;
+const OPEN_MUTANTS: usize = 1500;
 
 fn change_float(random: &mut Random, x: f64) -> f64 {
     match random.below(8) {
@@ -378,12 +468,86 @@ fn mutate(random: &mut Random, map: &mut Map) -> &'static str {
     }
 }
 
+/// Moves a vertex and the column there alike, so that boundaries stay the same.
+fn mutate_both(random: &mut Random, map: &mut Map) -> &'static str {
+    let v = random.below(map.positions.len().min(map.levels[0].len()));
+    let (from, level) = (map.positions[v].clone(), random.below(4));
+    change_points(random, &mut map.positions[v..=v]);
+    if random.below(3) > 0 {
+        let factor = *random.pick(&[0.5, 1.0, 2.0]);
+        map.positions[v] = from.iter().map(|x| x + factor * (random.unit() - 0.5)).collect();
+    }
+    let step: Vec<f64> = map.positions[v].iter().zip(&from).map(|(a, b)| a - b).collect();
+    for (l, points) in map.levels.iter_mut().enumerate().filter(|(l, points)| *l != level && points[v] != from) {
+        points[v].iter_mut().zip(&step).for_each(|(x, step)| *x += step * if l == 1 { 0.0 } else { 1.0 });
+    }
+    map.levels.iter_mut().filter(|points| points[v] == from).for_each(|points| points[v] = map.positions[v].clone());
+    "vertex and column alike"
+}
+
+/// Moves a source vertex inside, if there is one, to a point in special position at a wall, or makes a wall lean.
+fn mutate_at_wall(random: &mut Random, map: &mut Map) -> &'static str {
+    let [i, j] = random.pick(&boundary(&map.prisms)).map(|v| v as usize);
+    let level = 2 * random.below(2);
+    if random.below(3) == 0 {
+        let step = [0; 3].map(|_| 4.0 * (random.unit() - 0.5));
+        [i, j].iter().for_each(|&v| (0..3).for_each(|x| map.levels[level][v][x] += step[x]));
+        return "walls";
+    }
+    let (along, up) = (*random.pick(&[-0.25, 0.0, 0.5, 0.875, 1.0]), *random.pick(&[0.0, 0.0, 0.25, 0.375]));
+    let at = |v: usize, x: usize| (1.0 - up) * map.levels[1][v][x] + up * map.levels[level][v][x];
+    let point: Vec<f64> = (0..3).map(|x| (1.0 - along) * at(i, x) + along * at(j, x)).collect();
+    let on_boundary = boundary(&map.source_cells).concat();
+    let inside: Vec<usize> = (0..map.positions.len()).filter(|&v| !on_boundary.contains(&(v as u32))).collect();
+    let v = if inside.is_empty() { i } else { *random.pick(&inside) };
+    map.positions[v] = point;
+    if random.below(2) == 0 {
+        map.positions[v].iter_mut().for_each(|x| *x *= 0.875);
+    }
+    "source vertex at a wall"
+}
+
 #[test]
 fn mutants_are_certified_exactly_when_the_oracle_finds_them_valid() {
-    let shells: Vec<_> = small_shells().into_iter().filter(|(_, map)| map.prisms.len() <= 12).collect();
-    let (mut random, mut tally) = (Random(11), BTreeMap::<&str, [usize; 4]>::new());
+    let shells = closed_shells().into_iter().filter(|(_, map)| is_small(map) && map.prisms.len() <= 12).collect();
+    let tally = judge(shells, MUTANTS, 11, mutate);
+    assert!(tally.kinds.len() == 8 && tally.kinds.values().all(|counts| counts.iter().sum::<usize>() >= 100));
+}
+
+#[test]
+fn mutants_of_open_shells_are_certified_exactly_when_the_oracle_finds_them_valid() {
+    let shells = open_shells().into_iter().filter(|(_, map)| is_small(map)).collect();
+    let tally = judge(shells, OPEN_MUTANTS, 12, |random, map| match random.below(8) {
+        0..4 => mutate(random, map),
+        4 | 5 => mutate_both(random, map),
+        _ => mutate_at_wall(random, map),
+    });
+    assert!(tally.kinds.len() == 11 && tally.kinds.values().all(|counts| counts.iter().sum::<usize>() >= 20));
+    let both = tally.kinds["vertex and column alike"];
+    assert!(both[0] >= 100 && both[1] >= 50, "{both:?}");
+    for words in ["meets the wall", "does not lie inside", "is none of the other", "two vertices of the boundary"] {
+        let count: usize = tally.rules.iter().filter(|(rule, _)| rule.contains(words)).map(|(_, n)| n).sum();
+        assert!(count >= 10, "{words}: {count}");
+    }
+}
+
+/// How many mutants were certified, refuted, undecided, unreadable, by their kind; and refuted, by rule and message.
+#[derive(Default)]
+struct Tally {
+    kinds: BTreeMap<&'static str, [usize; 4]>,
+    rules: BTreeMap<String, usize>,
+}
+
+/// Compares verdicts on mutants with those of the oracle.
+fn judge(
+    shells: Vec<(&str, Map)>,
+    count: usize,
+    seed: u64,
+    mutate: impl Fn(&mut Random, &mut Map) -> &'static str,
+) -> Tally {
+    let (mut random, mut tally) = (Random(seed), Tally::default());
     let mut made = 0;
-    while made < MUTANTS {
+    while made < count {
         let (name, valid) = random.pick(&shells);
         let mut map = valid.clone();
         let kind = mutate(&mut random, &mut map);
@@ -400,12 +564,16 @@ fn mutants_are_certified_exactly_when_the_oracle_finds_them_valid() {
             Ok(Verdict::Undecided(_)) => 2,
             Err(_) => 3,
         };
-        tally.entry(kind).or_default()[place] += 1;
+        tally.kinds.entry(kind).or_default()[place] += 1;
+        if let Ok(Verdict::Refuted(witness)) = &verdict {
+            *tally.rules.entry(format!("{} {}", witness.rule, witness.message)).or_default() += 1;
+        }
         assert_eq!(place == 0, is_valid(&map), "{name}, {kind}: {verdict:?}\n{map:?}");
     }
     println!("{:<24} {:>9} {:>9} {:>9} {:>10}", "mutation of", "harmless", "refuted", "undecided", "unreadable");
-    for (kind, [a, b, c, d]) in &tally {
+    for (kind, [a, b, c, d]) in &tally.kinds {
         println!("{kind:<24} {a:>9} {b:>9} {c:>9} {d:>10}");
     }
-    assert!(made >= 3000 && tally.len() == 8 && tally.values().all(|counts| counts.iter().sum::<usize>() >= 100));
+    tally.rules.iter().for_each(|(rule, n)| println!("{n:>6} {rule}"));
+    tally
 }

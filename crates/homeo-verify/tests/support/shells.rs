@@ -1,6 +1,6 @@
 //! Small meshes and shells, and the definition of a valid shell, checked naively: all pairs, rational numbers.
 
-use super::clip::{Rational, dot, minus, normal, rational, span_an_area, within_tetrahedron, within_triangle};
+use super::clip::{Rational, cross, dot, minus, normal, rational, span_an_area, within_tetrahedron, within_triangle};
 use super::{Map, write};
 use dashu_ratio::RBig;
 use std::collections::{BTreeMap, BTreeSet};
@@ -122,7 +122,137 @@ fn pinch(map: &mut Map, column: usize) {
     map.levels.iter_mut().for_each(|level| level[column] = point.clone());
 }
 
+/// A patch over the plane: a triangle.
+pub fn triangle() -> Mesh {
+    (vec![[4., 0., 0.], [-2., 3., 0.25], [-2., -3., -0.25]], vec![[0, 1, 2]])
+}
+
+/// A bumpy hexagon: a boundary loop of 6 edges, then loops further in, then the centre.
+pub fn hexagon(loops: u32) -> Mesh {
+    let mut mesh: Mesh = (vec![], vec![]);
+    let bumps = [0., 0.5, 0.25, -0.25, 0.125, 0.25, -0.125];
+    for (n, i) in (0..loops).flat_map(|n| (0..6).map(move |i| (n, i))) {
+        let [x, y] = [[4., 0.], [2., 3.], [-2., 3.], [-4., 0.], [-2., -3.], [2., -3.]][i as usize];
+        let part = f64::from(loops - n) / f64::from(loops);
+        mesh.0.push([part * x, part * y, bumps[(i + n) as usize % 7]]);
+        let [a, b] = [6 * n + i, 6 * n + (i + 1) % 6];
+        match n + 1 == loops {
+            true => mesh.1.push([a, b, 6 * loops]),
+            false => mesh.1.extend([[a, b, a + 6], [b, b + 6, a + 6]]),
+        }
+    }
+    mesh.0.push([0., 0., 0.25]);
+    mesh
+}
+
+/// The boundary of [`hexagon`] without any vertices inside.
+pub fn bare_hexagon() -> Mesh {
+    (hexagon(1).0[..6].to_vec(), vec![[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]])
+}
+
+/// The part of a mesh whose vertices are kept.
+pub fn cap(mesh: &Mesh, is_kept: impl Fn([f64; 3]) -> bool) -> Mesh {
+    let kept: Vec<u32> = (0..mesh.0.len() as u32).filter(|&v| is_kept(mesh.0[v as usize])).collect();
+    let place = |v: u32| kept.binary_search(&v).ok().map(|place| place as u32);
+    let cells = mesh.1.iter().filter_map(|&[a, b, c]| Some([place(a)?, place(b)?, place(c)?]));
+    (kept.iter().map(|&v| mesh.0[v as usize]).collect(), cells.collect())
+}
+
+/// Three triangles from each, with a vertex a little outward from the middle.
+pub fn starred(mesh: &Mesh) -> Mesh {
+    let (mut positions, mut cells) = (mesh.0.clone(), vec![]);
+    for &[a, b, c] in &mesh.1 {
+        let n = positions.len() as u32;
+        let [p, q, r] = [a, b, c].map(|v| mesh.0[v as usize]);
+        positions.push([0, 1, 2].map(|x| 0.34375 * (p[x] + q[x] + r[x])));
+        cells.extend([[a, b, n], [b, c, n], [c, a, n]]);
+    }
+    (positions, cells)
+}
+
+/// A ring of radius 1 about the third axis.
+pub fn cylinder(count: u32, rows: u32) -> Mesh {
+    let mut mesh: Mesh = (vec![], vec![]);
+    for (j, i) in (0..rows).flat_map(|j| (0..count).map(move |i| (j, i))) {
+        let s = std::f64::consts::TAU * f64::from(i) / f64::from(count);
+        mesh.0.push([s.cos(), s.sin(), f64::from(j) + 0.25 * s.sin()]);
+        let [a, b] = [count * j + i, count * j + (i + 1) % count];
+        if j + 1 < rows {
+            mesh.1.extend([[a, b, b + count], [a, b + count, a + count]]);
+        }
+    }
+    mesh
+}
+
+/// The shell of a patch over the plane, from `low` to `high` along the third axis.
+pub fn over_plane(source: &Mesh, middle: &Mesh, heights: [f64; 2]) -> Map {
+    let [bottom, top] = heights.map(|h| middle.0.iter().map(|p| [p[0], p[1], p[2] + h]).collect::<Vec<_>>());
+    shell(source, &middle.1, [&bottom, &middle.0, &top])
+}
+
+/// Shells of surfaces with boundary.
+pub fn open_shells() -> Vec<(&'static str, Map)> {
+    let (t, h, ball) = (triangle(), hexagon(1), icosphere(1));
+    let half = cap(&ball, |p| p[2] > -0.3);
+    let lid = cap(&icosphere(0), |p| p[2] > -0.1);
+    let mut leaning = over_plane(&starred(&h), &h, [-2.0, 2.0]);
+    for v in 0..6 {
+        (leaning.levels[0][v][0], leaning.levels[2][v][1]) = (1.125 * h.0[v][0], 0.875 * h.0[v][1]);
+    }
+    let mut pinched = over_plane(&h, &h, [-2.0, 2.0]);
+    pinch(&mut pinched, 1);
+    let mut twice_pinched = over_plane(&hexagon(2), &h, [-2.0, 2.0]);
+    pinch(&mut twice_pinched, 0);
+    pinch(&mut twice_pinched, 2);
+    let mut ring_pinched = tube(&cylinder(5, 2), &cylinder(5, 2));
+    pinch(&mut ring_pinched, 3);
+    let two = joined(&h, &octahedron(), [0.0, 0.0, 5.0]);
+    let level = |h: f64, factor: f64| -> Vec<[f64; 3]> {
+        let (patch, ball) = two.0.split_at(7);
+        let ball = ball.iter().map(|p| [factor * p[0], factor * p[1], 5.0 + factor * (p[2] - 5.0)]);
+        patch.iter().map(|p| [p[0], p[1], p[2] + h]).chain(ball).collect()
+    };
+    let patch_and_ball = shell(&two, &two.1, [&level(-1.0, 0.75), &two.0, &level(1.0, 1.25)]);
+    let overlapping = joined(&h, &h, [0.0, 0.0, 3.0]);
+    vec![
+        ("triangle", over_plane(&t, &t, [-1.0, 1.0])),
+        ("starred triangle", over_plane(&starred(&t), &t, [-1.0, 1.0])),
+        ("hexagon", over_plane(&h, &h, [-2.0, 2.0])),
+        ("hexagon in a finer one", over_plane(&hexagon(2), &bare_hexagon(), [-2.0, 2.0])),
+        ("hexagon in a coarser one", over_plane(&bare_hexagon(), &hexagon(2), [-2.0, 2.0])),
+        ("hexagon with leaning walls", leaning),
+        ("hexagon, pinched at the boundary", pinched),
+        ("hexagon, pinched twice", twice_pinched),
+        ("two hexagons that overlap", over_plane(&overlapping, &overlapping, [-2.0, 2.0])),
+        ("hexagon and octahedron", patch_and_ball),
+        ("part of an icosahedron", around(&lid, &lid, [0.75, 1.25])),
+        ("part of a sphere", around(&half, &half, [0.75, 1.25])),
+        ("finer part of a sphere", around(&starred(&half), &half, [0.75, 1.25])),
+        ("ring", tube(&cylinder(5, 2), &cylinder(5, 2))),
+        ("finer ring", tube(&starred_ring(&cylinder(5, 2)), &cylinder(5, 2))),
+        ("long ring", tube(&cylinder(7, 4), &cylinder(7, 4))),
+        ("ring, pinched at the boundary", ring_pinched),
+    ]
+}
+
+/// Three triangles from each, with a vertex a little outward from the third axis.
+fn starred_ring(mesh: &Mesh) -> Mesh {
+    let (mut positions, cells) = starred(mesh);
+    positions.iter_mut().skip(mesh.0.len()).for_each(|p| p[2] *= 32.0 / 33.0);
+    (positions, cells)
+}
+
+/// The shell round a mesh about the third axis.
+pub fn tube(source: &Mesh, middle: &Mesh) -> Map {
+    let level = |f: f64| -> Vec<[f64; 3]> { middle.0.iter().map(|p| [f * p[0], f * p[1], p[2]]).collect() };
+    shell(source, &middle.1, [&level(0.5), &middle.0, &level(1.5)])
+}
+
 pub fn all_shells() -> Vec<(&'static str, Map)> {
+    closed_shells().into_iter().chain(open_shells()).collect()
+}
+
+pub fn closed_shells() -> Vec<(&'static str, Map)> {
     let (t, o, i) = (tetrahedron(), octahedron(), icosphere(0));
     let mut pinched = around(&o, &o, [0.75, 1.5]);
     pinch(&mut pinched, 4);
@@ -162,6 +292,7 @@ fn around_points(points: &[[f64; 3]], factor: f64) -> Vec<[f64; 3]> {
 type Corner = (u32, usize);
 
 struct Exact {
+    cells: Vec<Vec<u32>>,
     triangles: Vec<[Rational; 3]>,
     levels: Vec<Vec<Rational>>,
     prisms: Vec<Vec<u32>>,
@@ -179,34 +310,39 @@ pub fn is_valid(map: &Map) -> bool {
         return false;
     }
     let points = |rows: &[Vec<f64>]| -> Vec<Rational> { rows.iter().map(|p| rational([p[0], p[1], p[2]])).collect() };
-    if !is_closed_surface(&map.source_cells, map.positions.len())
-        || !is_closed_surface(&map.prisms, map.levels[0].len())
-    {
+    if !is_surface(&map.source_cells, map.positions.len()) || !is_surface(&map.prisms, map.levels[0].len()) {
         return false;
     }
     let positions = points(&map.positions);
     let corners = |cell: &Vec<u32>| [0, 1, 2].map(|i| positions[cell[i] as usize].clone());
     let shell = Exact {
+        cells: map.source_cells.clone(),
         triangles: map.source_cells.iter().map(corners).collect(),
         levels: map.levels.iter().map(|level| points(level)).collect(),
         prisms: map.prisms.clone(),
     };
     let has_area = |t: &[Rational; 3]| span_an_area(t);
-    shell.triangles.iter().all(has_area)
+    shell.has_common_boundary()
+        && shell.triangles.iter().all(has_area)
         && shell.is_positive()
         && shell.keeps_off_bottom_and_top()
+        && shell.keeps_inside_of_walls()
         && shell.is_crossed_from_below()
         && shell.covers_once()
         && shell.is_met_once()
 }
 
-/// Every directed edge once and once in the other direction, round every vertex one loop, no triangle twice.
-fn is_closed_surface(cells: &[Vec<u32>], count: usize) -> bool {
-    let directed: Vec<(u32, u32)> = cells.iter().flat_map(|c| [(c[0], c[1]), (c[1], c[2]), (c[2], c[0])]).collect();
-    let set: BTreeSet<(u32, u32)> = directed.iter().copied().collect();
+fn directed_edges(cells: &[Vec<u32>]) -> Vec<[u32; 2]> {
+    cells.iter().flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]).collect()
+}
+
+/// Every directed edge at most once, round every vertex one loop or one path, no triangle twice.
+fn is_surface(cells: &[Vec<u32>], count: usize) -> bool {
+    let directed = directed_edges(cells);
+    let set: BTreeSet<[u32; 2]> = directed.iter().copied().collect();
     let sets: BTreeSet<BTreeSet<u32>> = cells.iter().map(|cell| cell.iter().copied().collect()).collect();
     let is_simple = set.len() == directed.len()
-        && set.iter().all(|&(a, b)| a != b && (a as usize) < count && set.contains(&(b, a)))
+        && set.iter().all(|&[a, b]| a != b && (a as usize) < count)
         && sets.len() == cells.len();
     is_simple && {
         let vertices: BTreeSet<u32> = cells.iter().flatten().copied().collect();
@@ -214,15 +350,22 @@ fn is_closed_surface(cells: &[Vec<u32>], count: usize) -> bool {
             let star = cells.iter().filter(|cell| cell.contains(&v));
             let after = |cell: &Vec<u32>, k: usize| cell[(cell.iter().position(|w| *w == v).expect("in it") + k) % 3];
             let next: BTreeMap<u32, u32> = star.map(|cell| (after(cell, 1), after(cell, 2))).collect();
-            let start = *next.keys().next().expect("a triangle");
+            let is_first = |w: &&u32| !next.values().any(|other| other == *w);
+            let start = *next.keys().find(is_first).or(next.keys().next()).expect("a triangle");
             let (mut at, mut steps) = (next[&start], 1);
-            while at != start {
+            while at != start && next.contains_key(&at) {
                 at = next[&at];
                 steps += 1;
             }
             steps == next.len()
         })
     }
+}
+
+/// Directed edges without the opposite ones.
+pub fn boundary(cells: &[Vec<u32>]) -> Vec<[u32; 2]> {
+    let directed = directed_edges(cells);
+    directed.iter().copied().filter(|&[a, b]| !directed.contains(&[b, a])).collect()
 }
 
 impl Exact {
@@ -272,6 +415,65 @@ impl Exact {
                     };
                     are_apart(triangle, &end) || within_triangle(triangle, &end).iter().all(allowed)
                 })
+            })
+        })
+    }
+
+    /// The point of a vertex of the source that lies in a triangle.
+    fn position(&self, v: u32) -> &Rational {
+        let place = |cell: &Vec<u32>| cell.iter().position(|&w| w == v);
+        self.cells.iter().zip(&self.triangles).find_map(|(cell, t)| Some(&t[place(cell)?])).expect("in a triangle")
+    }
+
+    /// L1: the boundary edges as pairs of points, and different points of boundary vertices.
+    fn has_common_boundary(&self) -> bool {
+        let ends = [boundary(&self.cells), boundary(&self.prisms)];
+        let mut points = [
+            ends[0].iter().map(|e| e.map(|v| self.position(v))).collect::<Vec<_>>(),
+            ends[1].iter().map(|e| e.map(|v| self.at((v, 1)))).collect::<Vec<_>>(),
+        ];
+        points.iter_mut().for_each(|list| list.sort());
+        let differ = |k: usize| {
+            let vertices: BTreeSet<u32> = ends[k].iter().flatten().copied().collect();
+            vertices.len() == points[k].iter().flatten().collect::<BTreeSet<_>>().len()
+        };
+        points[0] == points[1] && differ(0) && differ(1)
+    }
+
+    /// L3 at walls, all triangles with all.
+    fn keeps_inside_of_walls(&self) -> bool {
+        boundary(&self.prisms).iter().all(|&[i, j]| {
+            let prism = self.prisms.iter().find(|cell| directed_edges(&[cell.to_vec()]).contains(&[i, j]));
+            let third = *prism.expect("a prism at the edge").iter().find(|v| ![i, j].contains(v)).expect("a column");
+            let middles = [i, j].map(|v| self.at((v, 1)));
+            let ends = boundary(&self.cells).into_iter().find(|e| e.map(|v| self.position(v)) == middles);
+            let [v, w] = ends.expect("as both surfaces have these edges");
+            let triples = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
+            triples.iter().flat_map(|triple| [(triple, 0), (triple, 1)]).all(|(triple, low)| {
+                let corners = [(i, low), (j, low), (i, low + 1), (j, low + 1)];
+                let wall = triple.map(|n| self.at(corners[n]).clone());
+                let side = |x: &Rational| dot(&normal(&wall), &minus(x, &wall[0]));
+                let is_proper = wall[0] != wall[1] && wall[1] != wall[2] && wall[2] != wall[0];
+                let is_inside = |x: &Rational| side(x) * side(self.at((third, low))) > RBig::ZERO;
+                !is_proper
+                    || self.cells.iter().zip(&self.triangles).all(|(cell, triangle)| {
+                        let held = |n: usize, v: u32| cell.contains(&v) && wall.contains(middles[n]);
+                        let common = || match are_apart(triangle, &wall) {
+                            true => vec![],
+                            false => within_triangle(triangle, &wall),
+                        };
+                        match (held(0, v), held(1, w)) {
+                            (false, false) => common().is_empty(),
+                            (true, false) => common().iter().all(|p| p == middles[0]),
+                            (false, true) => common().iter().all(|p| p == middles[1]),
+                            (true, true) => {
+                                let mut others = cell.iter().filter(|u| ![v, w].contains(u));
+                                let step = minus(middles[1], middles[0]);
+                                others.all(|&u| is_inside(self.position(u)))
+                                    && common().iter().all(|p| cross(&minus(p, middles[0]), &step) == [RBig::ZERO; 3])
+                            }
+                        }
+                    })
             })
         })
     }
