@@ -185,6 +185,9 @@ impl Shell {
     /// When there is no such prism, the weights are out of range, or the shell's certificate does not hold.
     pub fn to_source_exact(&self, at: &ShellPoint<Rational>) -> Result<SurfacePoint, ShellEvaluationError> {
         let fibre = self.fibre(at)?;
+        if fibre[1..].iter().all(|point| *point == fibre[0]) {
+            return self.source_vertex(&fibre[0]);
+        }
         let near: Vec<Point> = fibre.iter().map(|p| p.each_ref().map(Rational::to_f64)).collect();
         let hull = Aabb::of(&near);
         let region = Aabb { low: hull.low.map(f64::next_down), high: hull.high.map(f64::next_up) };
@@ -201,6 +204,20 @@ impl Shell {
             }
         }
         Err(ShellEvaluationError::Outside)
+    }
+
+    /// A point of the source that is a vertex: where a pinched column is.
+    fn source_vertex(&self, point: &ExactPoint) -> Result<SurfacePoint, ShellEvaluationError> {
+        let near = point.each_ref().map(Rational::to_f64);
+        let mut lowest = None;
+        self.triangles.query_point(near, |t| {
+            let corners = self.source.complex().cells()[t].map(|v| self.source.positions()[v.index()].map(exact));
+            if corners.contains(point) {
+                lowest = Some(lowest.map_or(t, |low: usize| low.min(t)));
+            }
+        });
+        let found = lowest.map(|t| SurfacePoint { triangle: t as u32, point: point.clone() });
+        found.ok_or(ShellEvaluationError::Outside)
     }
 
     /// The point of the middle surface on the pillar line of a point, rounded from the exact one.
@@ -223,7 +240,10 @@ impl Shell {
 
     /// The corners of the pillar line through a point, from bottom to top.
     fn fibre(&self, at: &ShellPoint<Rational>) -> Result<Vec<ExactPoint>, ShellEvaluationError> {
-        let [_, middle, last] = self.order(at.prism.min(self.parts.prisms.len().saturating_sub(1) as u32));
+        if at.prism as usize >= self.parts.prisms.len() {
+            return Err(ShellEvaluationError::NoSuchPoint);
+        }
+        let [_, middle, last] = self.order(at.prism);
         let both = &at.weights[middle] + &at.weights[last];
         let one = Rational::ONE;
         let heights = [
@@ -275,7 +295,8 @@ impl Shell {
         })
     }
 
-    /// Whether two locations are the same point of the shell, seen from neighbouring prisms.
+    /// Whether two locations of one point of space are the same point of the shell, seen from neighbouring prisms. At a
+    /// pinched column pillar lines shrink to shorter ones, so that such a point may have several heights on its line.
     fn is_same(&self, a: &ShellPoint<Rational>, b: &ShellPoint<Rational>) -> bool {
         let terms = |at: &ShellPoint<Rational>| {
             let columns = self.parts.prisms[at.prism as usize];
@@ -284,7 +305,15 @@ impl Shell {
             terms.sort_unstable_by_key(|(column, _)| *column);
             terms
         };
-        a.height == b.height && terms(a) == terms(b)
+        let on_line = terms(a);
+        on_line == terms(b)
+            && (a.height == b.height || on_line.iter().any(|&(column, _)| self.is_pinched(column as usize)))
+    }
+
+    /// Whether a column is a single point.
+    fn is_pinched(&self, column: usize) -> bool {
+        let [bottom, middle, top] = [&self.parts.bottom, &self.parts.middle, &self.parts.top].map(|l| l[column]);
+        bottom == middle && middle == top
     }
 
     /// Whether a point lies in the shell, exactly: in one prism or in several.
