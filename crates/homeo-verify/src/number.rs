@@ -111,6 +111,26 @@ mod tests {
         }
     }
 
+    /// Steps in one plane, moved by one unit in the last place or not at all.
+    #[test]
+    fn signs_of_almost_flat_steps_are_exact() {
+        let (mut state, mut undecided) = (1u64, 0);
+        for k in 0..3000 {
+            let mut coordinate = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                (state >> 40) as f64 / 1024.0
+            };
+            let mut points = [0; 6].map(|_| [coordinate(), coordinate(), 0.0]);
+            points.iter_mut().for_each(|p| p[2] = p[0] + 3.0 * p[1]);
+            points[k % 6][k % 3] = f64::from_bits(points[k % 6][k % 3].to_bits() + (k as u64 / 18) % 2);
+            let [a, b, c, d, e, f] = points;
+            let exact = determinant_sign([exact_step(a, b), exact_step(c, d), exact_step(e, f)]);
+            assert_eq!(steps_orientation([[a, b], [c, d], [e, f]]), exact, "{points:?}");
+            undecided += usize::from(exact == Ordering::Equal);
+        }
+        assert!((500..2500).contains(&undecided), "{undecided}");
+    }
+
     #[test]
     fn finest_units_are_exact() {
         assert_eq!(in_finest_units(1.0), IBig::ONE << FINEST_BITS);

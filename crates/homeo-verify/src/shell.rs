@@ -11,11 +11,13 @@
 use crate::complex::{Complex, UnionFind};
 use crate::links::check_manifold;
 use crate::map_file::{MapFile, ShellData};
-use crate::number::{Exact, Point, exact_orientation, in_finest_units, is_flat_triangle};
-use crate::number::{orientation_3d, steps_orientation};
+use crate::number::{
+    Exact, Point, exact_orientation, in_finest_units, is_flat_triangle, orientation_3d, steps_orientation,
+};
 use crate::source::check_finite;
-use crate::triangles::{BoxTree, Triangle, bounds, count_crossings, have_common_area};
-use crate::triangles::{triangles_meet, triangles_meet_beyond};
+use crate::triangles::{
+    BoxTree, Triangle, bounds, count_crossings, have_common_area, triangles_meet, triangles_meet_beyond,
+};
 use crate::verdict::{Checked, Stop, check, decidable, refuted};
 use dashu_int::IBig;
 use std::cmp::{Ordering, Reverse};
@@ -38,15 +40,15 @@ struct Shell<'a> {
 pub(crate) fn check_shell(map: &MapFile, data: &ShellData) -> Checked<Vec<(&'static str, u64)>> {
     check_finite(&map.positions)?;
     let source = check_surface(&map.cells, map.positions.len(), "source")?;
+    let corners = |cell: &[u32]| [0, 1, 2].map(|i| map.positions[cell[i] as usize]);
     for (c, cell) in source.cells().enumerate() {
-        let [a, b, c_] = [0, 1, 2].map(|i| map.positions[cell[i] as usize]);
-        check(!is_flat_triangle(a, b, c_), "L1", "a triangle has area zero", &[c], cell)?;
+        let [p, q, r] = corners(cell);
+        check(!is_flat_triangle(p, q, r), "L1", "a triangle has area zero", &[c], cell)?;
     }
     let counted_after_source = |stop| count_after(stop, source.count(), map.positions.len());
     let levels = &data.levels;
     levels.iter().try_for_each(|level| check_finite(level)).map_err(counted_after_source)?;
     let prisms = check_surface(&data.prisms, levels[0].len(), "middle surface").map_err(counted_after_source)?;
-    let corners = |cell: &[u32]| [0, 1, 2].map(|i| map.positions[cell[i] as usize]);
     let boxes: Vec<_> = source.cells().map(|cell| bounds(&corners(cell))).collect();
     let triangles = BoxTree::new(&boxes);
     let shell = Shell { positions: &map.positions, source, levels, prisms, triangles };
@@ -193,8 +195,8 @@ impl Shell<'_> {
         for slab in 0..self.slab_count() {
             for c in self.triangles.meeting(&bounds(&self.slab_points(slab))) {
                 let triangle = self.triangle(c);
-                let [a, b, c_] = triangle;
-                let is_from_below = |pillar| steps_orientation([[a, b], [a, c_], pillar]) == Ordering::Greater;
+                let [p, q, r] = triangle;
+                let is_from_below = |pillar| steps_orientation([[p, q], [p, r], pillar]) == Ordering::Greater;
                 if self.pillars(slab).all(is_from_below) {
                     continue;
                 }
@@ -293,7 +295,7 @@ fn first_cells(complex: &Complex) -> Vec<usize> {
     (0..complex.count()).filter(|&c| components.find(c) == c).collect()
 }
 
-/// Tries points inside a triangle until one is in general position. They lie on a parabola, so that few are on one line.
+/// Tries points inside a triangle until one is in general position. They lie on a conic: few on a line.
 fn try_weights(mut is_general: impl FnMut([u16; 3]) -> Checked<bool>) -> Checked {
     for k in 0..50 {
         if is_general([997, 1009 + 31 * k, 1013 + k * k])? {

@@ -14,6 +14,7 @@ use serde_json::json;
 use std::collections::BTreeMap;
 use support::build::all_maps;
 use support::random::Random;
+use support::shells::all_shells;
 use support::{Map, oracle, write};
 
 const VALUE_MUTANTS_PER_MAP: usize = 800;
@@ -361,7 +362,7 @@ fn content(bytes: &[u8]) -> Option<Vec<(String, Vec<u8>)>> {
 #[test]
 fn damaged_containers_are_unreadable_or_hold_the_same_map() {
     let (mut random, mut tally) = (Random(7), Tally::default());
-    for (name, valid) in all_maps() {
+    for (name, valid) in all_maps().into_iter().chain(all_shells().into_iter().take(1)) {
         let original = valid.bytes();
         for _ in 0..CONTAINER_MUTANTS_PER_MAP {
             let (kind, bytes) = if random.below(2) == 0 {

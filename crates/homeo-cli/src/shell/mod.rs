@@ -121,7 +121,6 @@ fn explain(session: &Session, error: &ShellError) -> Failure {
     let message = error.to_string();
     match error {
         ShellError::Thickness => Failure::usage(message),
-        ShellError::Open(_) => Failure::input("open-boundary", message),
         ShellError::Stuck { triangle, .. } => Failure::limits("stuck", message).with("elements", json!([triangle])),
         ShellError::Cancelled => session.stopped(),
     }

@@ -5,6 +5,7 @@ pub mod build;
 pub mod clip;
 pub mod oracle;
 pub mod random;
+pub mod shells;
 pub mod write;
 
 use serde_json::{Value, json};

@@ -134,31 +134,16 @@ impl Shell {
     /// # Errors
     /// When there is no such prism, a weight is negative, they do not add up to 1, or the height is not in `[-1, 1]`.
     pub fn unproject_exact(&self, at: &ShellPoint<Rational>) -> Result<ExactPoint, ShellEvaluationError> {
-        let zero = &Rational::ZERO;
-        let fits = at.weights.iter().all(|w| w >= zero)
-            && at.weights.iter().cloned().sum::<Rational>() == Rational::ONE
-            && at.height <= Rational::ONE
-            && at.height >= -Rational::ONE;
-        if !fits || at.prism as usize >= self.parts.prisms.len() {
-            return Err(ShellEvaluationError::NoSuchPoint);
-        }
-        let upper = at.height >= *zero;
+        self.check_point(at)?;
+        let upper = at.height >= Rational::ZERO;
         let height = if upper { at.height.clone() } else { &at.height + &Rational::ONE };
         let slab = 2 * at.prism as usize + usize::from(upper);
-        let [_, middle, last] = self.order(at.prism);
-        let both = &at.weights[middle] + &at.weights[last];
-        // How much of each column's weight is at its high point.
+        // How much of each column's weight is at its high point: the columns with the largest numbers rise first.
         let mut high = [Rational::ZERO, Rational::ZERO, Rational::ZERO];
-        let [first, ..] = self.order(at.prism);
-        if height <= at.weights[last] {
-            high[last] = height;
-        } else if height <= both {
-            high[last] = at.weights[last].clone();
-            high[middle] = &height - &at.weights[last];
-        } else {
-            high[last] = at.weights[last].clone();
-            high[middle] = at.weights[middle].clone();
-            high[first] = &height - &both;
+        let mut left = &height * &self.lifted(at);
+        for k in self.rising(at.prism) {
+            high[k] = if left < at.weights[k] { left.clone() } else { at.weights[k].clone() };
+            left = &left - &high[k];
         }
         let columns = self.parts.prisms[slab / 2].map(|v| level_pair(&self.parts, v as usize, slab % 2));
         Ok(std::array::from_fn(|axis| {
@@ -185,15 +170,19 @@ impl Shell {
     /// When there is no such prism, the weights are out of range, or the shell's certificate does not hold.
     pub fn to_source_exact(&self, at: &ShellPoint<Rational>) -> Result<SurfacePoint, ShellEvaluationError> {
         let fibre = self.fibre(at)?;
-        if fibre[1..].iter().all(|point| *point == fibre[0]) {
-            return self.source_vertex(&fibre[0]);
-        }
         let near: Vec<Point> = fibre.iter().map(|p| p.each_ref().map(Rational::to_f64)).collect();
         let hull = Aabb::of(&near);
         let region = Aabb { low: hull.low.map(f64::next_down), high: hull.high.map(f64::next_up) };
         let mut candidates = Vec::new();
         self.triangles.query_box(&region, |t| candidates.push(t as u32));
         candidates.sort_unstable();
+        if let [pinched] = fibre.as_slice() {
+            let is_corner = |t: &u32| {
+                self.source.complex().cells()[*t as usize].iter().any(|v| self.source.positions()[v.index()] == near[0])
+            };
+            let triangle = candidates.into_iter().find(is_corner).ok_or(ShellEvaluationError::Outside)?;
+            return Ok(SurfacePoint { triangle, point: pinched.clone() });
+        }
         for t in candidates {
             let corners =
                 self.source.complex().cells()[t as usize].map(|v| self.source.positions()[v.index()].map(exact));
@@ -204,20 +193,6 @@ impl Shell {
             }
         }
         Err(ShellEvaluationError::Outside)
-    }
-
-    /// A point of the source that is a vertex: where a pinched column is.
-    fn source_vertex(&self, point: &ExactPoint) -> Result<SurfacePoint, ShellEvaluationError> {
-        let near = point.each_ref().map(Rational::to_f64);
-        let mut lowest = None;
-        self.triangles.query_point(near, |t| {
-            let corners = self.source.complex().cells()[t].map(|v| self.source.positions()[v.index()].map(exact));
-            if corners.contains(point) {
-                lowest = Some(lowest.map_or(t, |low: usize| low.min(t)));
-            }
-        });
-        let found = lowest.map(|t| SurfacePoint { triangle: t as u32, point: point.clone() });
-        found.ok_or(ShellEvaluationError::Outside)
     }
 
     /// The point of the middle surface on the pillar line of a point, rounded from the exact one.
@@ -238,25 +213,32 @@ impl Shell {
         Ok(rounded(&self.to_source_exact(&at)?.point))
     }
 
-    /// The corners of the pillar line through a point, from bottom to top.
+    /// The corners of the pillar line through a point, from bottom to top; one point where it has no length.
     fn fibre(&self, at: &ShellPoint<Rational>) -> Result<Vec<ExactPoint>, ShellEvaluationError> {
-        if at.prism as usize >= self.parts.prisms.len() {
-            return Err(ShellEvaluationError::NoSuchPoint);
+        self.check_point(at)?;
+        let lifted = self.lifted(at);
+        if lifted.is_zero() {
+            return Ok(vec![self.unproject_exact(&ShellPoint { height: Rational::ZERO, ..at.clone() })?]);
         }
-        let [_, middle, last] = self.order(at.prism);
-        let both = &at.weights[middle] + &at.weights[last];
-        let one = Rational::ONE;
-        let heights = [
-            -Rational::ONE,
-            &at.weights[last] - &one,
-            &both - &one,
-            Rational::ZERO,
-            at.weights[last].clone(),
-            both.clone(),
-            one.clone(),
-        ];
+        // The line turns where a column has risen.
+        let mut heights = vec![Rational::ZERO];
+        for k in self.rising(at.prism) {
+            let next = heights.last().map_or(Rational::ZERO, |last| last + &(&at.weights[k] / &lifted));
+            heights.push(next);
+        }
+        let lower = heights.iter().map(|h| h - &Rational::ONE);
+        let heights: Vec<Rational> = lower.chain(heights.iter().skip(1).cloned()).collect();
         let point = |height| self.unproject_exact(&ShellPoint { prism: at.prism, weights: at.weights.clone(), height });
         heights.into_iter().map(point).collect()
+    }
+
+    /// Whether there is such a prism, the weights are possible, and the height is in range.
+    fn check_point(&self, at: &ShellPoint<Rational>) -> Result<(), ShellEvaluationError> {
+        let fits = (at.prism as usize) < self.parts.prisms.len()
+            && at.weights.iter().all(|w| *w >= Rational::ZERO)
+            && at.weights.iter().cloned().sum::<Rational>() == Rational::ONE
+            && (-Rational::ONE..=Rational::ONE).contains(&at.height);
+        if fits { Ok(()) } else { Err(ShellEvaluationError::NoSuchPoint) }
     }
 
     /// The positions, in a prism, of its columns in ascending order of their numbers.
@@ -265,6 +247,24 @@ impl Shell {
         let mut order = [0, 1, 2];
         order.sort_unstable_by_key(|&k| columns[k]);
         order
+    }
+
+    /// The positions of the columns that have a length, by descending numbers.
+    fn rising(&self, prism: u32) -> impl Iterator<Item = usize> + '_ {
+        let columns = self.parts.prisms[prism as usize];
+        let order = self.order(prism);
+        order.into_iter().rev().filter(move |&k| !self.is_pinched(columns[k]))
+    }
+
+    fn is_pinched(&self, column: u32) -> bool {
+        let parts = &self.parts;
+        let column = column as usize;
+        parts.bottom[column] == parts.middle[column] && parts.middle[column] == parts.top[column]
+    }
+
+    /// The weight of the columns that have a length: 1 where none is pinched.
+    fn lifted(&self, at: &ShellPoint<Rational>) -> Rational {
+        self.rising(at.prism).map(|k| at.weights[k].clone()).sum()
     }
 
     /// The tetrahedra of the slabs of a prism; see `docs/theory/shells.md`.
@@ -283,20 +283,24 @@ impl Shell {
         self.tetrahedra(prism).into_iter().find_map(|cell| {
             let corners = cell.map(|(column, is_high)| columns[column][usize::from(is_high)].map(exact));
             let inside = weights_in(&corners, point)?;
-            let mut weights = [Rational::ZERO, Rational::ZERO, Rational::ZERO];
-            let mut height = if slab % 2 == 1 { Rational::ZERO } else { -Rational::ONE };
+            let mut at = ShellPoint { prism, weights: [0, 1, 2].map(|_| Rational::ZERO), height: Rational::ZERO };
             for ((column, is_high), weight) in cell.into_iter().zip(&inside) {
-                weights[column] = &weights[column] + weight;
-                if is_high {
-                    height = &height + weight;
+                at.weights[column] = &at.weights[column] + weight;
+                if is_high && !self.is_pinched(self.parts.prisms[slab / 2][column]) {
+                    at.height = &at.height + weight;
                 }
             }
-            Some(ShellPoint { prism, weights, height })
+            let lifted = self.lifted(&at);
+            if lifted.is_zero() {
+                at.height = Rational::ZERO; // a pinched point
+            } else {
+                at.height = &(&at.height / &lifted) - &if slab % 2 == 1 { Rational::ZERO } else { Rational::ONE };
+            }
+            Some(at)
         })
     }
 
-    /// Whether two locations of one point of space are the same point of the shell, seen from neighbouring prisms. At a
-    /// pinched column pillar lines shrink to shorter ones, so that such a point may have several heights on its line.
+    /// Whether two locations are the same point of the shell, seen from neighbouring prisms.
     fn is_same(&self, a: &ShellPoint<Rational>, b: &ShellPoint<Rational>) -> bool {
         let terms = |at: &ShellPoint<Rational>| {
             let columns = self.parts.prisms[at.prism as usize];
@@ -305,15 +309,7 @@ impl Shell {
             terms.sort_unstable_by_key(|(column, _)| *column);
             terms
         };
-        let on_line = terms(a);
-        on_line == terms(b)
-            && (a.height == b.height || on_line.iter().any(|&(column, _)| self.is_pinched(column as usize)))
-    }
-
-    /// Whether a column is a single point.
-    fn is_pinched(&self, column: usize) -> bool {
-        let [bottom, middle, top] = [&self.parts.bottom, &self.parts.middle, &self.parts.top].map(|l| l[column]);
-        bottom == middle && middle == top
+        a.height == b.height && terms(a) == terms(b)
     }
 
     /// Whether a point lies in the shell, exactly: in one prism or in several.

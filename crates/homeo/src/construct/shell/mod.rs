@@ -7,7 +7,7 @@
 //!              vertices of the source as their middles; directions by the point of a convex hull nearest to the origin.
 //! Arithmetic:  every accepted operation is decided by exact signs; directions, lengths and energies only guide.
 //! Cost:        about proportional to the triangles, times what a prism comes to hold.
-//! Fails when:  the surface is open or crosses itself, or two singular vertices are neighbours -> [`ShellError`].
+//! Fails when:  the surface crosses or touches itself, or two singular vertices are neighbours -> [`ShellError`].
 //! See:         `docs/theory/shells.md`.
 
 mod directions;
@@ -61,9 +61,6 @@ pub enum ShellError {
     /// The thickness is no positive number.
     #[error("the thickness has to be a positive number")]
     Thickness,
-    /// The surface has boundary edges.
-    #[error("the surface has a boundary, and shells of open surfaces are not made yet: close its {0} boundary edges")]
-    Open(usize),
     /// No positive thickness was found at a triangle.
     #[error(
         "no shell was found at triangle {triangle}: {reason}; split the triangles there, or remove self-intersections"
@@ -79,13 +76,14 @@ pub enum ShellError {
     Cancelled,
 }
 
-/// Halvings of a column before it is given up.
-const MOST_HALVINGS: u32 = 60;
+/// A column is given up when it is shorter than this part of what it began with.
+const SHORTEST: f64 = 1e-13;
 
-/// Builds a shell round a closed surface.
+/// Builds a shell round a surface. Columns on its boundary keep their place.
 ///
 /// # Preconditions
-/// The triangles form a closed oriented surface by their links, none has area zero, and it does not cross itself.
+/// The triangles form an oriented surface by their links, with or without boundary, none has area zero, and it does not
+/// cross or touch itself.
 ///
 /// # Errors
 /// See [`ShellError`].
@@ -96,10 +94,6 @@ pub fn build(
 ) -> Result<(Shell, ShellInfo), ShellError> {
     if !(params.thickness > 0.0 && params.thickness.is_finite()) {
         return Err(ShellError::Thickness);
-    }
-    let boundary = source.complex().adjacency().map_or(0, |adjacency| adjacency.boundary_facets().count());
-    if boundary > 0 {
-        return Err(ShellError::Open(boundary));
     }
     let target = params.thickness * longest_side(source.positions());
     progress.stage("directions");
@@ -143,25 +137,32 @@ fn first_layer(
     };
     let columns = (0..directions.len()).map(|v| column(v, [lengths[v]; 2])).collect();
     let mut reaches: Vec<[f64; 2]> = lengths.iter().map(|&length| [length; 2]).collect();
-    let mut halvings = vec![0u32; directions.len()];
     let mut layer = Layer::new(source, columns);
     let mut waiting: Vec<u32> = (0..layer.prisms.len() as u32).rev().collect();
     let mut is_waiting = vec![true; waiting.len()];
     while let Some(prism) = waiting.pop() {
         is_waiting[prism as usize] = false;
-        let Err(failure) = layer.fill(prism) else { continue };
+        let Err((failure, slab)) = layer.fill(prism) else { continue };
         if progress.is_cancelled() {
             return Err(ShellError::Cancelled);
         }
         let corners = layer.prisms[prism as usize];
-        for &v in &corners {
-            let v = v as usize;
-            halvings[v] += 1;
-            if halvings[v] > MOST_HALVINGS {
-                return Err(ShellError::Stuck { triangle: prism, reason: reason(failure) });
+        // The longest columns are halved: short ones do less harm, and a fan of thin triangles would wear them out.
+        let longest = corners.iter().map(|&v| reaches[v as usize][slab]).fold(0.0, f64::max);
+        for v in corners.map(|v| v as usize) {
+            if reaches[v][slab] > 0.6 * longest {
+                reaches[v][slab] /= 2.0;
+                layer.columns[v] = column(v, reaches[v]);
             }
-            reaches[v] = reaches[v].map(|reach| reach / 2.0);
-            layer.columns[v] = column(v, reaches[v]);
+            if reaches[v][slab] < SHORTEST * lengths[v] {
+                // Too short to be of use: without thickness, if the prisms round it can bear that.
+                let mut others = layer.around[v].iter().flat_map(|&p| layer.prisms[p as usize]);
+                if others.any(|other| layer.is_pinched(other)) {
+                    return Err(ShellError::Stuck { triangle: prism, reason: reason(failure) });
+                }
+                layer.columns[v] = [source.positions()[v]; 3];
+                reaches[v] = [0.0; 2];
+            }
         }
         for &touched in corners.iter().flat_map(|&v| &layer.around[v as usize]) {
             if !is_waiting[touched as usize] {
@@ -178,6 +179,7 @@ fn reason(failure: Failure) -> &'static str {
         Failure::Volume => "its prism does not become positive, as where singular vertices are neighbours",
         Failure::Cap => "the surface comes too close to itself",
         Failure::Crossing => "a triangle near it is crossed the wrong way",
+        Failure::Wall => "the surface comes too close to its boundary",
     }
 }
 
@@ -213,6 +215,7 @@ fn simplify(
         info.rounds += 1;
         let before = layer.count();
         info.flips += simplify::flip_edges(layer);
+        simplify::smooth(layer);
         simplify::thicken(layer, target);
         info.collapses += simplify::collapse_edges(layer, params.prisms);
         if layer.count() as f64 > 0.999 * before as f64 && info.rounds > 3 {

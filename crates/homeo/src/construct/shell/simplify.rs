@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::directions::minus;
+use super::directions::{dot, minus};
 use super::layer::{Layer, area_and_sides};
 
 /// Middle triangles with a larger energy are not made, unless there were such before.
@@ -57,7 +57,7 @@ pub(super) fn collapse_edges(layer: &mut Layer, enough: usize) -> usize {
 
 /// Moves column `gone` into its neighbour `kept`, if the shell stays valid.
 fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
-    if layer.is_pinched(gone) || !is_link_fit(layer, gone, kept) {
+    if !is_free(layer, gone) || !is_link_fit(layer, gone, kept) {
         return false;
     }
     let old = layer.around[gone as usize].clone();
@@ -69,6 +69,11 @@ fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
         return false;
     }
     layer.replace(&old, &new).is_ok()
+}
+
+/// Whether a column may be changed: not on the boundary, and of some length.
+fn is_free(layer: &Layer, column: u32) -> bool {
+    !layer.is_frozen[column as usize] && !layer.is_pinched(column)
 }
 
 /// The link condition: the two columns exist, and share just the two neighbours opposite their edge.
@@ -115,7 +120,7 @@ fn flip(layer: &mut Layer, prism: u32, side: usize) -> bool {
 pub(super) fn thicken(layer: &mut Layer, target: f64) -> usize {
     let mut grown = 0;
     for column in 0..layer.columns.len() as u32 {
-        if layer.around[column as usize].is_empty() || layer.is_pinched(column) {
+        if layer.around[column as usize].is_empty() || !is_free(layer, column) {
             continue;
         }
         let neighbours = layer.neighbours(column);
@@ -127,6 +132,75 @@ pub(super) fn thicken(layer: &mut Layer, target: f64) -> usize {
         }
     }
     grown
+}
+
+/// Moves columns towards the middle of their neighbours where that lowers the worst energy round them, and turns
+/// them towards their neighbours' directions. Returns how many moved.
+pub(super) fn smooth(layer: &mut Layer) -> usize {
+    let mut moved = 0;
+    for column in 0..layer.columns.len() as u32 {
+        if layer.around[column as usize].is_empty() || !is_free(layer, column) {
+            continue;
+        }
+        let neighbours = layer.neighbours(column);
+        moved += usize::from(pan(layer, column, &neighbours)) + usize::from(turn(layer, column, &neighbours));
+    }
+    moved
+}
+
+/// Shifts a column along the surface: towards the centroid of its neighbours, as far as possible of 1, 1/2 and 1/4.
+fn pan(layer: &mut Layer, column: u32, neighbours: &[u32]) -> bool {
+    let before = layer.columns[column as usize];
+    let centroid = mean(neighbours.iter().map(|&v| layer.columns[v as usize][1]));
+    let [bottom, middle, top] = before;
+    let (pillar, step) = (minus(top, bottom), minus(centroid, middle));
+    let along = dot(step, pillar) / dot(pillar, pillar);
+    let step: [f64; 3] = std::array::from_fn(|axis| step[axis] - along * pillar[axis]);
+    let prisms = layer.around[column as usize].clone();
+    let worst = |layer: &Layer| worst_energy(layer, prisms.iter().map(|&p| layer.prisms[p as usize]));
+    let energy_before = worst(layer);
+    [1.0, 0.5, 0.25].into_iter().any(|share| {
+        let shifted = before.map(|p| std::array::from_fn(|axis| p[axis] + share * step[axis]));
+        let Some(shifted) = layer.with_middle_on_surface(column, shifted) else { return false };
+        layer.columns[column as usize] = shifted;
+        let is_better = worst(layer) < 0.99 * energy_before && layer.recheck(column).is_ok();
+        if !is_better {
+            layer.columns[column as usize] = before;
+        }
+        is_better
+    })
+}
+
+/// Gives a column the mean direction of its neighbours, half of it, or leaves it.
+fn turn(layer: &mut Layer, column: u32, neighbours: &[u32]) -> bool {
+    let before = layer.columns[column as usize];
+    let unit = |v: [f64; 3]| {
+        let length = dot(v, v).sqrt();
+        v.map(|x| x / length)
+    };
+    let direction = |layer: &Layer, v: u32| unit(minus(layer.columns[v as usize][2], layer.columns[v as usize][0]));
+    let own = direction(layer, column);
+    let wanted = mean(neighbours.iter().filter(|&&v| !layer.is_pinched(v)).map(|&v| direction(layer, v)));
+    if !wanted.iter().all(|x| x.is_finite()) || dot(unit(wanted), own) > 0.9999 {
+        return false;
+    }
+    let [down, up] = [reach(layer, column, 0), reach(layer, column, 2)];
+    [1.0, 0.5].into_iter().any(|share| {
+        let turned = unit([0, 1, 2].map(|axis| own[axis] + share * (wanted[axis] - own[axis])));
+        let at = |by: f64| [0, 1, 2].map(|axis| before[1][axis] + by * turned[axis]);
+        layer.columns[column as usize] = [at(-down), before[1], at(up)];
+        let is_valid = layer.recheck(column).is_ok();
+        if !is_valid {
+            layer.columns[column as usize] = before;
+        }
+        is_valid
+    })
+}
+
+fn mean(points: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
+    let (sum, count) =
+        points.fold(([0.0; 3], 0.0), |(sum, count), p| ([0, 1, 2].map(|axis| sum[axis] + p[axis]), count + 1.0));
+    sum.map(|x| x / count)
 }
 
 /// How far bottom or top is from the middle.
@@ -142,9 +216,7 @@ fn stretch(layer: &mut Layer, column: u32, level: usize, wanted: f64) -> bool {
     let factor = wanted / reach(layer, column, level);
     let step = minus(before[level], before[1]);
     layer.columns[column as usize][level] = [0, 1, 2].map(|axis| before[1][axis] + factor * step[axis]);
-    let prisms = layer.around[column as usize].clone();
-    let corners: Vec<[u32; 3]> = prisms.iter().map(|&p| layer.prisms[p as usize]).collect();
-    let is_valid = layer.replace(&prisms, &corners).is_ok();
+    let is_valid = layer.recheck(column).is_ok();
     if !is_valid {
         layer.columns[column as usize] = before;
     }

@@ -1,0 +1,411 @@
+//! Shells: valid ones, a negative control for every rule L1 to L6, and random mutations judged by an oracle.
+#![allow(clippy::print_stdout)] // counts, for people
+
+mod support;
+
+use homeo_verify::{Verdict, Witness, verify_bytes};
+use serde_json::json;
+use std::collections::BTreeMap;
+use support::random::Random;
+use support::shells::{all_shells, around, icosphere, is_valid, joined, octahedron, shell, tetrahedron, turned};
+use support::{Map, write};
+
+#[test]
+fn all_valid_shells_are_certified() {
+    for (name, map) in all_shells() {
+        match verify_bytes(&map.bytes()) {
+            Ok(Verdict::Certified(claim)) => {
+                assert_eq!([&claim.kind[..], &claim.target], ["shell"; 2], "{name}");
+                assert!(claim.statement.contains("theorem on shells, rules L1-L6"), "{}", claim.statement);
+            }
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+}
+
+#[test]
+fn the_oracle_accepts_the_same_shells() {
+    for (name, map) in small_shells() {
+        assert!(is_valid(&map), "{name}");
+    }
+}
+
+#[test]
+fn any_scale_of_coordinates_is_certified() {
+    for (name, map) in small_shells() {
+        for scale in [2f64.powi(-1060), 2f64.powi(-400), 1e-3, 2f64.powi(300), 2f64.powi(1000)] {
+            let mut map = map.clone();
+            map.positions.iter_mut().chain(map.levels.iter_mut().flatten()).flatten().for_each(|x| *x *= scale);
+            let verdict = verify_bytes(&map.signed_bytes());
+            assert!(matches!(verdict, Ok(Verdict::Certified(_))), "{name} times {scale}: {verdict:?}");
+        }
+    }
+}
+
+/// Vertices in no triangle and columns in no prism are no part of the claim; but they have to be finite.
+#[test]
+fn unused_vertices_and_columns_are_ignored() {
+    let mut map = named("octahedron");
+    map.positions.push(vec![9.0; 3]);
+    map.levels.iter_mut().for_each(|level| level.push(vec![0.1; 3]));
+    assert!(matches!(verify_bytes(&map.signed_bytes()), Ok(Verdict::Certified(_))));
+    map.levels[1][6][0] = f64::NAN;
+    assert_refuted(&map, "S1", "finite");
+}
+
+fn small_shells() -> Vec<(&'static str, Map)> {
+    all_shells().into_iter().filter(|(_, map)| map.prisms.len() <= 20 && map.source_cells.len() <= 32).collect()
+}
+
+fn named(name: &str) -> Map {
+    all_shells().into_iter().find(|(other, _)| *other == name).expect("a name from the list").1
+}
+
+#[track_caller]
+fn assert_refuted(map: &Map, rule: &str, words: &str) -> Witness {
+    match verify_bytes(&map.signed_bytes()) {
+        Ok(Verdict::Refuted(witness)) => {
+            assert_eq!(witness.rule, rule, "{witness:?}");
+            assert!(witness.message.contains(words), "{witness:?}");
+            witness
+        }
+        other => panic!("not refuted: {other:?}"),
+    }
+}
+
+#[track_caller]
+fn assert_unreadable(bytes: &[u8], words: &str) {
+    match verify_bytes(bytes) {
+        Err(error) => assert!(error.message.contains(words), "{error}"),
+        Ok(verdict) => panic!("readable: {verdict:?}"),
+    }
+}
+
+#[test]
+fn containers_of_shells() {
+    let edit = |key: &str, value: serde_json::Value, words: &str| {
+        let mut map = named("octahedron");
+        map.manifest[key] = value;
+        assert_unreadable(&map.bytes(), words);
+    };
+    edit("kind", json!("foliation"), "belong together");
+    edit("kind", json!("piecewise-linear"), "belong together");
+    edit("target", json!("square"), "belong together");
+    edit("target", json!("disk"), "centre");
+    edit("target", json!("cube"), "dimension");
+    edit("dimension", json!(3), "dimension");
+    edit("centre", json!({"cell": 0, "length": 1}), "centre");
+    let map = named("octahedron");
+    for name in ["shell_bottom", "shell_middle", "shell_top", "prisms"] {
+        let mut entries = write::entries(&map);
+        entries.retain(|entry| entry.0 != format!("{name}.npy"));
+        assert_unreadable(&write::zip(&entries), &format!("{name} is missing"));
+    }
+    for name in ["cells.npy", "parents.npy", "lengths.npy", "target_positions.npy"] {
+        let mut entries = write::entries(&map);
+        entries.push((name.to_owned(), vec![]));
+        assert_unreadable(&write::zip(&entries), "does not belong");
+    }
+    for level in 0..3 {
+        let mut map = map.clone();
+        map.levels[level].pop();
+        assert_unreadable(&map.bytes(), "header");
+    }
+}
+
+#[test]
+fn rules_s1_and_s2() {
+    let mut map = named("octahedron");
+    map.positions[3][1] = f64::INFINITY;
+    assert_eq!(assert_refuted(&map, "S1", "finite").vertices, [3]);
+    for level in 0..3 {
+        let mut map = named("octahedron");
+        map.levels[level][2][0] = f64::NAN;
+        assert_eq!(assert_refuted(&map, "S1", "finite").vertices, [6 + 2]);
+    }
+    let mut map = named("octahedron");
+    map.source_cells[5][2] = 6;
+    assert_eq!(assert_refuted(&map, "S2", "exist").cells, [5]);
+    let mut map = named("octahedron");
+    map.prisms[5][2] = u32::MAX;
+    assert_eq!(assert_refuted(&map, "S2", "exist").cells, [8 + 5]);
+    let mut map = named("octahedron");
+    map.prisms[5][2] = map.prisms[5][1];
+    assert_refuted(&map, "S2", "twice");
+}
+
+#[test]
+fn rule_l1_closed_oriented_surfaces() {
+    let mut flipped = named("octahedron");
+    flipped.source_cells[3].swap(0, 1);
+    assert_refuted(&flipped, "L1", "same side");
+    let mut flipped = named("octahedron");
+    flipped.prisms[3].swap(0, 1);
+    let witness = assert_refuted(&flipped, "L1", "same side");
+    assert!(witness.cells.contains(&(8 + 3)) && witness.points.len() == 2, "{witness:?}");
+    let mut open = named("octahedron");
+    open.source_cells.pop();
+    assert_refuted(&open, "L1", "source: an edge");
+    let mut open = named("octahedron");
+    open.prisms.pop();
+    assert_refuted(&open, "L1", "middle surface: an edge");
+    let mut three = named("octahedron");
+    three.source_cells.push(vec![0, 2, 1]);
+    assert_refuted(&three, "L1", "share");
+    let mut pillow = named("octahedron");
+    pillow.source_cells = vec![vec![0, 1, 2], vec![2, 1, 0]];
+    assert_refuted(&pillow, "S2", "same vertices");
+    let mut flat = named("octahedron");
+    flat.positions[4] = vec![0.5, 0.5, 0.0];
+    assert_refuted(&flat, "L1", "area zero");
+    let glue = |cells: &mut Vec<Vec<u32>>| cells.iter_mut().flatten().filter(|v| **v == 6).for_each(|v| *v = 0);
+    let mut glued = named("two that overlap");
+    glue(&mut glued.source_cells);
+    assert_eq!(assert_refuted(&glued, "L1", "not connected").vertices, [0]);
+    let mut glued = named("two that overlap");
+    glue(&mut glued.prisms);
+    assert_eq!(assert_refuted(&glued, "L1", "not connected").vertices, [10]);
+}
+
+#[test]
+fn rule_l2_positive_tetrahedra() {
+    let mut inverted = named("octahedron");
+    inverted.levels.swap(0, 2);
+    assert_refuted(&inverted, "L2", "turned over");
+    let mut inside_out = named("octahedron");
+    inside_out.prisms.iter_mut().for_each(|prism| prism.swap(0, 1));
+    assert_refuted(&inside_out, "L2", "turned over");
+    let mut sheared = named("octahedron");
+    sheared.levels[2][4] = vec![1.5, 1.5, 0.0];
+    assert_refuted(&sheared, "L2", "turned over");
+    for level in [0, 2] {
+        let mut half_pinched = named("octahedron");
+        half_pinched.levels[level][4] = half_pinched.levels[1][4].clone();
+        assert_refuted(&half_pinched, "L2", "flat");
+    }
+    let mut pinched = named("octahedron, pinched");
+    (0..3).for_each(|level| pinched.levels[level][0] = vec![1., 0., 0.]);
+    assert_refuted(&pinched, "L2", "more than one");
+}
+
+#[test]
+fn rule_l3_source_between_bottom_and_top() {
+    let mut map = named("sphere in an icosahedron");
+    let point = map.positions[0].clone();
+    for factor in [1.5, 1.4, 0.5] {
+        map.positions[0] = point.iter().map(|x| factor * x).collect();
+        let witness = assert_refuted(&map, "L3", "meets");
+        assert!(witness.vertices.contains(&0) && witness.cells[1] >= 320, "{witness:?}");
+    }
+    let mut touching = named("octahedron");
+    touching.positions[4] = touching.levels[2][4].clone();
+    assert_refuted(&touching, "L3", "meets");
+    let mut other_corner = named("octahedron, pinched");
+    other_corner.positions[4][2] += 1e-9;
+    assert_refuted(&other_corner, "L3", "meets");
+    let mut same_level = named("octahedron, pinched");
+    same_level.levels[2][0] = vec![0.999, 0., 0.];
+    same_level.levels[1][0] = vec![0.9, 0., 0.];
+    assert_refuted(&same_level, "L3", "meets"); // beyond the pinched corner
+}
+
+#[test]
+fn rule_l4_pillars_cross_from_below() {
+    let mut folded = named("sphere in an icosahedron");
+    let cell = folded.source_cells[100].clone();
+    // Beyond the opposite edge: the triangle turns over.
+    let [a, b, c] = [0, 1, 2].map(|i| folded.positions[cell[i] as usize].clone());
+    folded.positions[cell[0] as usize] = (0..3).map(|x| 0.75 * (b[x] + c[x]) - 0.5 * a[x]).collect();
+    assert_refuted(&folded, "L4", "not crossed");
+    let mut inside_out = named("octahedron");
+    inside_out.source_cells.iter_mut().for_each(|cell| cell.swap(0, 1));
+    assert_refuted(&inside_out, "L4", "not crossed");
+    let t = tetrahedron();
+    assert_refuted(&around(&turned(&t, 1.0), &t, [0.25, 4.0]), "L4", "not crossed");
+}
+
+#[test]
+fn rule_l5_the_shell_covers_the_source_once() {
+    let o = octahedron();
+    let mut far = named("octahedron");
+    far.positions.iter_mut().for_each(|p| p[0] += 100.0);
+    assert_refuted(&far, "L5", "has 0 preimages");
+    let twice = joined(&o, &o, [0.0; 3]);
+    let level = |factor: f64| -> Vec<[f64; 3]> { twice.0.iter().map(|p| p.map(|x| factor * x)).collect() };
+    let covered_twice = shell(&o, &twice.1, [&level(0.75), &twice.0, &level(1.25)]);
+    assert_refuted(&covered_twice, "L5", "has 2 preimages");
+    let mut second = named("two that overlap");
+    second.positions.iter_mut().skip(6).for_each(|p| p[2] += 50.0);
+    let witness = assert_refuted(&second, "L5", "has 0 preimages");
+    assert_eq!(witness.cells, [8], "the first triangle of the second component");
+}
+
+#[test]
+fn rule_l6_fibres_meet_the_source_once() {
+    let o = octahedron();
+    let inner = (o.0.iter().map(|p| p.map(|x| 0.75 * x)).collect(), o.1.clone());
+    assert_refuted(&around(&joined(&o, &inner, [0.0; 3]), &o, [0.5, 1.5]), "L6", "in 2 points");
+    // The same surface twice in one place: each point of it still has one preimage.
+    assert_refuted(&around(&joined(&o, &o, [0.0; 3]), &o, [0.5, 1.5]), "L6", "in 2 points");
+    let mut empty = named("two that overlap");
+    empty.source_cells.truncate(8);
+    let witness = assert_refuted(&empty, "L6", "in 0 points");
+    assert_eq!(witness.cells, [8 + 8], "the first prism of the second component");
+    let mut nothing = named("octahedron");
+    nothing.source_cells.clear();
+    assert_refuted(&nothing, "L6", "in 0 points");
+}
+
+#[test]
+fn sources_finer_and_coarser_than_the_shell() {
+    let fine = around(&turned(&icosphere(3), 1.0), &icosphere(0), [0.8, 1.4]);
+    assert!(matches!(verify_bytes(&fine.bytes()), Ok(Verdict::Certified(_))));
+    let coarse = around(&icosphere(1), &icosphere(2), [0.75, 1.25]);
+    assert!(matches!(verify_bytes(&coarse.bytes()), Ok(Verdict::Certified(_))));
+}
+
+/// Two octahedra with a common corner, where both shells are pinched. The surface touches itself there, but the corner
+/// is two vertices of the source, one for each column.
+#[test]
+fn surfaces_that_touch_in_a_pinched_corner() {
+    let o = octahedron();
+    let mut map = around(&joined(&o, &o, [2.0, 0.0, 0.0]), &joined(&o, &o, [2.0, 0.0, 0.0]), [1.0, 1.0]);
+    for (v, middle) in map.levels[1].clone().into_iter().enumerate() {
+        let centre = if v < 6 { 0.0 } else { 2.0 };
+        for (level, factor) in [(0, 0.75), (2, 1.25)] {
+            map.levels[level][v] = vec![centre + factor * (middle[0] - centre), factor * middle[1], factor * middle[2]];
+            if v == 0 || v == 7 {
+                map.levels[level][v] = middle.clone();
+            }
+        }
+    }
+    map.sign();
+    assert!(is_valid(&map) && matches!(verify_bytes(&map.bytes()), Ok(Verdict::Certified(_))));
+    map.levels[2][0][0] += 0.25;
+    assert_refuted(&map, "L2", "flat");
+    (map.levels[0][0], map.levels[1][0]) = (vec![0.75, 0., 0.], vec![1., 0., 0.]);
+    assert_refuted(&map, "L3", "meets");
+}
+
+// Mutations.
+
+const MUTANTS: usize = 3500;
+
+fn change_float(random: &mut Random, x: f64) -> f64 {
+    match random.below(8) {
+        0 => *random.pick(&[f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300, 5e-324, 0.0, -0.0]),
+        1 => -x,
+        2 => f64::from_bits(x.to_bits() ^ 1 << random.below(64)),
+        3 => f64::from_bits(x.to_bits().wrapping_add(1)),
+        4 | 5 => x + 0.25 * (random.unit() - 0.5),
+        6 => x + random.unit() - 0.5,
+        _ => x * 2f64.powi(random.below(5) as i32 - 2),
+    }
+}
+
+fn change_points(random: &mut Random, points: &mut [Vec<f64>]) {
+    let (i, j, axis) = (random.below(points.len()), random.below(points.len()), random.below(3));
+    match random.below(8) {
+        0 => points.swap(i, j),
+        1 => points[i] = points[j].clone(),
+        2 => points[i].iter_mut().for_each(|x| *x *= 1.0 + 0.5 * (random.unit() - 0.5)),
+        3 => points[i].rotate_left(1),
+        _ => points[i][axis] = change_float(random, points[i][axis]),
+    }
+}
+
+fn change_cells(random: &mut Random, cells: &mut Vec<Vec<u32>>, vertex_count: usize) {
+    let (c, d, i) = (random.below(cells.len()), random.below(cells.len()), random.below(3));
+    match random.below(8) {
+        0 => drop(cells.remove(c)),
+        1 => cells.push(cells[c].clone()),
+        2 => cells[c].swap(i, (i + 1) % 3),
+        3 => cells[c].rotate_left(1), // harmless
+        4 => cells.swap(c, d),        // harmless
+        5 => cells[c][i] ^= 1 << random.below(32),
+        _ => cells[c][i] = random.below(vertex_count + 1) as u32,
+    }
+}
+
+fn mutate(random: &mut Random, map: &mut Map) -> &'static str {
+    let (vertex_count, column_count, level) = (map.positions.len(), map.levels[0].len(), random.below(3));
+    let (v, w) = (random.below(column_count), random.below(column_count));
+    match random.below(12) {
+        0..=2 => {
+            change_points(random, &mut map.positions);
+            "source positions"
+        }
+        3..=5 => {
+            change_points(random, &mut map.levels[level]);
+            "points of columns"
+        }
+        6 => {
+            change_cells(random, &mut map.source_cells, vertex_count);
+            "source triangles"
+        }
+        7 => {
+            change_cells(random, &mut map.prisms, column_count);
+            "prisms"
+        }
+        8 => {
+            map.levels.iter_mut().for_each(|level| level.swap(v, w));
+            "whole columns swapped"
+        }
+        9 => {
+            let rename = |u: &mut u32| {
+                *u = if *u == v as u32 {
+                    w as u32
+                } else if *u == w as u32 {
+                    v as u32
+                } else {
+                    *u
+                }
+            };
+            map.levels.iter_mut().for_each(|level| level.swap(v, w));
+            map.prisms.iter_mut().flatten().for_each(rename); // harmless, but another decomposition
+            "columns renumbered"
+        }
+        10 => {
+            let point = map.levels[level][v].clone();
+            map.levels.iter_mut().for_each(|level| level[v] = point.clone());
+            "columns pinched"
+        }
+        _ => {
+            let other = random.below(3);
+            map.levels[level][v] = map.levels[other][v].clone();
+            "columns half pinched"
+        }
+    }
+}
+
+#[test]
+fn mutants_are_certified_exactly_when_the_oracle_finds_them_valid() {
+    let shells: Vec<_> = small_shells().into_iter().filter(|(_, map)| map.prisms.len() <= 12).collect();
+    let (mut random, mut tally) = (Random(11), BTreeMap::<&str, [usize; 4]>::new());
+    let mut made = 0;
+    while made < MUTANTS {
+        let (name, valid) = random.pick(&shells);
+        let mut map = valid.clone();
+        let kind = mutate(&mut random, &mut map);
+        map.sign();
+        let is_slow_to_judge = map.source_cells.len() > 12 && random.below(4) > 0;
+        if is_slow_to_judge || map.bytes() == valid.bytes() {
+            continue;
+        }
+        made += 1;
+        let verdict = verify_bytes(&map.bytes());
+        let place = match &verdict {
+            Ok(Verdict::Certified(_)) => 0,
+            Ok(Verdict::Refuted(_)) => 1,
+            Ok(Verdict::Undecided(_)) => 2,
+            Err(_) => 3,
+        };
+        tally.entry(kind).or_default()[place] += 1;
+        assert_eq!(place == 0, is_valid(&map), "{name}, {kind}: {verdict:?}\n{map:?}");
+    }
+    println!("{:<24} {:>9} {:>9} {:>9} {:>10}", "mutation of", "harmless", "refuted", "undecided", "unreadable");
+    for (kind, [a, b, c, d]) in &tally {
+        println!("{kind:<24} {a:>9} {b:>9} {c:>9} {d:>10}");
+    }
+    assert!(made >= 3000 && tally.len() == 8 && tally.values().all(|counts| counts.iter().sum::<usize>() >= 100));
+}

@@ -1,0 +1,252 @@
+//! Shells of generated surfaces: every law of the projection, exactly.
+
+use homeo::construct::shell::{ShellError, ShellParams, build};
+use homeo::input::SourceMesh;
+use homeo::map::{Shell, ShellEvaluationError, ShellPoint};
+use homeo::progress::Silent;
+use homeo_core::mesh::SimplicialComplex;
+use homeo_core::number::Rational;
+
+type Point = [f64; 3];
+
+fn surface(positions: Vec<Point>, triangles: &[[u32; 3]]) -> SourceMesh<3> {
+    let complex = SimplicialComplex::from_indices(positions.len(), triangles).expect("indices");
+    SourceMesh::new(positions, complex)
+}
+
+/// A torus of `n` by `m` quadrilaterals, its tube modulated `bumps` times.
+fn torus(n: u32, m: u32, bumps: f64) -> SourceMesh<3> {
+    let point = |k: u32| {
+        let turn = std::f64::consts::TAU;
+        let (s, t) = (turn * f64::from(k / m) / f64::from(n), turn * f64::from(k % m) / f64::from(m));
+        let r = 0.3 + 0.05 * (bumps * s).sin();
+        [(1.0 + r * t.cos()) * s.cos(), (1.0 + r * t.cos()) * s.sin(), r * t.sin()]
+    };
+    let triangles: Vec<[u32; 3]> = (0..n * m)
+        .flat_map(|k| {
+            let (i, j) = (k / m, k % m);
+            let at = |i: u32, j: u32| i % n * m + j % m;
+            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+        })
+        .collect();
+    surface((0..n * m).map(point).collect(), &triangles)
+}
+
+/// A box cut into `n^2` squares per side and turned, so that no two normals of its sides are exactly perpendicular.
+fn turned_box(n: i32) -> SourceMesh<3> {
+    let mut numbers = std::collections::BTreeMap::new();
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
+        let mut number = |u: i32, v: i32| {
+            let mut grid = [0; 3];
+            grid[axis] = side * n;
+            grid[(axis + 1) % 3] = u;
+            grid[(axis + 2) % 3] = v;
+            *numbers.entry(grid).or_insert_with(|| {
+                let [x, y, z] = grid.map(|g| f64::from(g) / f64::from(n));
+                let (x, y) = (0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y);
+                positions.push([x, 0.36 * z + 0.48 * y, 1.7 * z - 0.2 * y]);
+                positions.len() as u32 - 1
+            })
+        };
+        for (u, v) in (0..n).flat_map(|u| (0..n).map(move |v| (u, v))) {
+            let [a, b, c, d] = [number(u, v), number(u + 1, v), number(u + 1, v + 1), number(u, v + 1)];
+            triangles.extend(if side == 1 { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
+        }
+    }
+    // The linear map turns the box over or not; the outside is where the normals have to point.
+    let mesh = surface(positions, &triangles);
+    if signed_volume(&mesh) > 0.0 { mesh } else { reversed(&mesh) }
+}
+
+fn signed_volume(mesh: &SourceMesh<3>) -> f64 {
+    let corner = |v: homeo_core::mesh::VertexId| mesh.positions()[v.index()];
+    let volume = |[a, b, c]: [Point; 3]| {
+        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    mesh.complex().cells().iter().map(|cell| volume(cell.map(corner))).sum()
+}
+
+fn reversed(mesh: &SourceMesh<3>) -> SourceMesh<3> {
+    let triangles: Vec<[u32; 3]> =
+        mesh.complex().cells().iter().map(|cell| [cell[0].raw(), cell[2].raw(), cell[1].raw()]).collect();
+    surface(mesh.positions().to_vec(), &triangles)
+}
+
+/// Four cubes one after the other, twisted round the origin, where normals of all six directions meet: no direction
+/// sees them all.
+fn twisted_cubes() -> SourceMesh<3> {
+    let cubes = [[0, 0, 0], [-1, 0, 0], [-1, -1, 0], [-1, -1, -1]];
+    let mut numbers = std::collections::BTreeMap::new();
+    let mut positions = Vec::new();
+    let mut triangles = Vec::new();
+    for (cube, axis, side) in
+        cubes.iter().flat_map(|cube| (0..3).flat_map(move |axis| [(cube, axis, 0), (cube, axis, 1)]))
+    {
+        let mut beyond = *cube;
+        beyond[axis] += 2 * side - 1;
+        if cubes.contains(&beyond) {
+            continue;
+        }
+        let mut number = |u: i32, v: i32| {
+            let mut corner = *cube;
+            corner[axis] += side;
+            corner[(axis + 1) % 3] += u;
+            corner[(axis + 2) % 3] += v;
+            *numbers.entry(corner).or_insert_with(|| {
+                positions.push(corner.map(f64::from));
+                positions.len() as u32 - 1
+            })
+        };
+        let [a, b, c, d] = [number(0, 0), number(1, 0), number(1, 1), number(0, 1)];
+        triangles.extend(if side == 1 { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
+    }
+    surface(positions, &triangles)
+}
+
+/// A bent tube with two boundary loops.
+fn half_torus() -> SourceMesh<3> {
+    let whole = torus(20, 12, 3.0);
+    let inside = |cell: &&[homeo_core::mesh::VertexId; 3]| cell.iter().all(|v| whole.positions()[v.index()][0] > -0.2);
+    let triangles: Vec<[u32; 3]> =
+        whole.complex().cells().iter().filter(inside).map(|cell| cell.map(|v| v.raw())).collect();
+    surface(whole.positions().to_vec(), &triangles)
+}
+
+fn exact(point: Point) -> [Rational; 3] {
+    point.map(|x| Rational::from_f64(x).expect("finite"))
+}
+
+fn built(source: &SourceMesh<3>, rounds: usize) -> Shell {
+    build(source, &ShellParams { rounds, ..ShellParams::default() }, &Silent).expect("a shell").0
+}
+
+/// A point of a source triangle with the given weights.
+fn inside(source: &SourceMesh<3>, triangle: usize, weights: [i64; 3]) -> [Rational; 3] {
+    let corners = source.complex().cells()[triangle].map(|v| exact(source.positions()[v.index()]));
+    let sum = Rational::from(weights.iter().sum::<i64>());
+    std::array::from_fn(|axis| {
+        let terms = (0..3).map(|k| &Rational::from(weights[k]) * &corners[k][axis]);
+        &terms.sum::<Rational>() / &sum
+    })
+}
+
+/// From the source to the middle and back, and from the middle to the source and back, without any difference.
+fn check_round_trips(shell: &Shell, step: usize) {
+    let source = shell.source();
+    for triangle in (0..source.complex().cell_count()).step_by(step) {
+        for weights in [[1, 0, 0], [1, 1, 0], [1, 1, 1], [7, 2, 1]] {
+            let point = inside(source, triangle, weights);
+            let middle = shell.to_middle_exact(&point).expect("on the source");
+            assert_eq!(middle.height, Rational::ZERO);
+            assert_eq!(shell.to_source_exact(&middle).expect("a point").point, point);
+        }
+    }
+    for prism in (0..shell.parts().prisms.len() as u32).step_by(step) {
+        let weight = |k: i64| &Rational::from(k) / &Rational::from(10);
+        let at = ShellPoint { prism, weights: [weight(5), weight(3), weight(2)], height: Rational::ZERO };
+        let there = shell.to_source_exact(&at).expect("a point of the source");
+        assert_eq!(shell.to_middle_exact(&there.point).expect("in the shell"), at);
+    }
+}
+
+/// `project` and `unproject` are inverse to one another at all heights.
+fn check_heights(shell: &Shell, step: usize) {
+    let part = |a: i64, b: i64| &Rational::from(a) / &Rational::from(b);
+    for prism in (0..shell.parts().prisms.len() as u32).step_by(step) {
+        for height in [part(-1, 1), part(-2, 3), part(-1, 5), part(0, 1), part(1, 7), part(5, 6), part(1, 1)] {
+            let at = ShellPoint { prism, weights: [part(1, 2), part(1, 3), part(1, 6)], height };
+            let point = shell.unproject_exact(&at).expect("in the shell");
+            match shell.project_exact(&point) {
+                Ok(found) => assert_eq!(found, at),
+                Err(ShellEvaluationError::Ambiguous(..)) => {}
+                Err(error) => panic!("{error} at {at:?}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn the_first_shell_of_every_surface_is_bijective() {
+    for source in [torus(16, 9, 3.0), turned_box(4), twisted_cubes(), half_torus()] {
+        let shell = built(&source, 0);
+        assert_eq!(shell.parts().prisms.len(), source.complex().cell_count());
+        check_round_trips(&shell, 3);
+        check_heights(&shell, 5);
+    }
+}
+
+#[test]
+fn simplified_shells_are_bijective() {
+    for (source, most) in [(torus(32, 16, 5.0), 400), (turned_box(6), 300), (twisted_cubes(), 36), (half_torus(), 150)]
+    {
+        let shell = built(&source, 10);
+        assert!(shell.parts().prisms.len() <= most, "{} prisms", shell.parts().prisms.len());
+        check_round_trips(&shell, 7);
+        check_heights(&shell, 3);
+    }
+}
+
+#[test]
+fn a_singular_vertex_is_pinched_and_maps_to_itself() {
+    let source = twisted_cubes();
+    let (shell, info) = build(&source, &ShellParams::default(), &Silent).expect("a shell");
+    assert_eq!(info.pinched, 1);
+    let apex = exact([0.0; 3]);
+    let middle = shell.to_middle_exact(&apex).expect("in the shell");
+    assert_eq!(shell.unproject_exact(&middle).expect("a point"), apex);
+    assert_eq!(shell.to_source_exact(&middle).expect("a point").point, apex);
+}
+
+#[test]
+fn rounded_images_lie_within_their_radius() {
+    let shell = built(&torus(16, 9, 3.0), 10);
+    for &point in shell.source().positions().iter().step_by(7) {
+        let middle = shell.to_middle(point).expect("in the shell");
+        let at = shell.to_middle_exact(&exact(point)).expect("in the shell");
+        let truth = shell.unproject_exact(&at).expect("a point");
+        for axis in 0..3 {
+            let off = (middle.point[axis] - truth[axis].to_f64()).abs();
+            assert!(off <= middle.radius);
+        }
+    }
+}
+
+#[test]
+fn a_wanted_number_of_prisms_ends_the_simplification() {
+    let source = torus(24, 12, 3.0);
+    let (shell, info) =
+        build(&source, &ShellParams { prisms: 300, ..ShellParams::default() }, &Silent).expect("a shell");
+    assert!(shell.parts().prisms.len() >= 299 && info.prisms == shell.parts().prisms.len());
+}
+
+#[test]
+fn what_has_no_shell_is_refused() {
+    let nearly_closed = [[0, 1, 2], [0, 2, 1]];
+    let folded = surface(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &nearly_closed);
+    assert!(matches!(build(&folded, &ShellParams::default(), &Silent), Err(ShellError::Stuck { .. })));
+    let thin = ShellParams { thickness: 0.0, ..ShellParams::default() };
+    assert_eq!(build(&torus(8, 6, 0.0), &thin, &Silent).err(), Some(ShellError::Thickness));
+}
+
+#[test]
+fn points_outside_and_impossible_places_are_errors() {
+    let shell = built(&torus(12, 8, 0.0), 0);
+    assert_eq!(shell.project_exact(&exact([9.0, 9.0, 9.0])), Err(ShellEvaluationError::Outside));
+    assert!(!shell.is_inside([9.0, 9.0, 9.0]) && shell.is_inside(shell.source().positions()[5]));
+    assert_eq!(shell.to_middle([f64::NAN, 0.0, 0.0]), Err(ShellEvaluationError::NotFinite));
+    let [zero, one] = [Rational::ZERO, Rational::ONE];
+    let at = |prism: u32, weights: [Rational; 3], height: Rational| ShellPoint { prism, weights, height };
+    let corner = [one.clone(), zero.clone(), zero.clone()];
+    let many = shell.parts().prisms.len() as u32;
+    for wrong in [
+        at(many, corner.clone(), zero.clone()),
+        at(0, [one.clone(), one.clone(), zero.clone()], zero.clone()),
+        at(0, corner.clone(), &one + &one),
+        at(0, [&zero - &one, &one + &one, zero.clone()], zero.clone()),
+    ] {
+        assert_eq!(shell.unproject_exact(&wrong), Err(ShellEvaluationError::NoSuchPoint));
+        assert!(shell.to_source_exact(&wrong).is_err());
+    }
+}
