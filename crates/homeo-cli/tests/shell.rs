@@ -162,7 +162,7 @@ fn unfit_meshes_are_refused_with_their_elements() {
         ("touching.obj", &two([1.0, 0.0, 0.0]), "coincident-vertices", "vertex 4"),
         ("flipped.off", &CLOSED.replace("3 0 2 1", "3 0 1 2"), "inconsistent-orientation", "0"),
         ("empty.off", "OFF\n0 0 0\n", "no-elements", "neither"),
-        ("cut.off", "OFF\n4 4 0\n0 0 0\n1 0", "truncated", "cut.off"),
+        ("cut.off", "OFF\n4 4 0\n0 0 0\n1 0", "unexpected-end", "cut.off"),
     ];
     for (name, content, code, words) in cases {
         let folder = Folder::new();
