@@ -43,7 +43,7 @@ pub struct Common {
     /// Write what happens to FILE, with times
     #[arg(long, global = true, value_name = "FILE")]
     pub log: Option<PathBuf>,
-    /// Stop after S seconds with exit code 4
+    /// Stop after S seconds with exit code 4 (`shell`: with what there is, if anything)
     #[arg(long, global = true, value_name = "S", value_parser = positive_seconds)]
     pub timeout: Option<f64>,
     /// Stop with exit code 4 when more memory is in use (bytes, or with K, M, G)
@@ -57,6 +57,8 @@ pub enum Verb {
     Info(InfoArgs),
     /// Map a disk onto the square or disk, or a ball onto the cube or ball, one-to-one and onto
     Map(MapArgs),
+    /// Make a prismatic shell round a closed surface, with its one-to-one projection
+    Shell(ShellArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
     /// Check the certificate of a map, independently of how it was made
@@ -71,6 +73,7 @@ impl Verb {
         match self {
             Self::Info(_) => "info",
             Self::Map(_) => "map",
+            Self::Shell(_) => "shell",
             Self::Eval(_) => "eval",
             Self::Verify(_) => "verify",
             Self::Report(_) => "report",
@@ -142,13 +145,51 @@ pub struct MapArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
+  homeo shell testdata/meshes/torus.obj -o torus.homeo --layers torus
+
+The certificate is checked on the bytes that were written; only then do they get their name.
+The middle surface of the first shell is the surface itself; simplification takes prisms away.
+When --timeout is reached then, the shell so far is checked and written.")]
+pub struct ShellArgs {
+    /// A closed surface that does not cross itself
+    #[arg(value_name = "MESH")]
+    pub input: PathBuf,
+    /// The map file to write
+    #[arg(short, long, value_name = "OUT.homeo")]
+    pub output: Option<PathBuf>,
+    /// Largest distance of bottom and top from the middle, relative to the longest side of the bounding box
+    #[arg(long, value_name = "T", default_value_t = 0.1, value_parser = positive)]
+    pub thickness: f64,
+    /// Stop when no more than N prisms are left [default: as few as possible]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub prisms: usize,
+    /// Rounds of simplification at most; with 0 the middle surface is the surface itself
+    #[arg(long, value_name = "N", default_value_t = 30)]
+    pub rounds: usize,
+    /// Also write bottom, middle and top as PREFIX_bottom.obj, PREFIX_middle.obj, PREFIX_top.obj
+    #[arg(long, value_name = "PREFIX")]
+    pub layers: Option<PathBuf>,
+    /// Merge vertices at exactly the same point into the first of them (reported)
+    #[arg(long)]
+    pub weld: bool,
+    /// Cut polygons of more than three corners into triangles
+    #[arg(long)]
+    pub triangulate: bool,
+    /// Turn triangles so that neighbours are oriented alike (reported)
+    #[arg(long)]
+    pub orient: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
   homeo map testdata/meshes/spot.mesh --onto cube -o spot.homeo
   homeo eval spot.homeo --points testdata/points/spot.csv -o images.csv
   homeo eval spot.homeo --points testdata/points/cube.csv --inverse --exact
 
 Points are .npy (float64, n by d) or .csv with the header x,y,z or x,y. Without -o the answer is
 CSV on standard output. --exact reads and writes rationals p/q (or decimals, which are exact); for
-disk and ball it is about their polyhedral forms, the diamond and the tetrahedron.")]
+disk and ball it is about their polyhedral forms, the diamond and the tetrahedron. Under a shell,
+points of it go along their pillar lines to the middle surface, with --inverse to the source.")]
 pub struct EvalArgs {
     /// The map
     #[arg(value_name = "MAP")]
@@ -219,6 +260,13 @@ pub enum Outside {
     Error,
     /// A row of NaN, and a count on standard error
     Nan,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
+        _ => Err("a number above 0 is needed".to_owned()),
+    }
 }
 
 fn positive_seconds(text: &str) -> Result<f64, String> {

@@ -17,9 +17,11 @@ mod mesh_input;
 mod outputs;
 mod points;
 mod proof;
+mod refuse;
 mod report;
 mod sampled;
 mod session;
+mod shell;
 mod text;
 mod verify;
 mod welded;
@@ -47,7 +49,8 @@ fn main() -> ExitCode {
 fn explain_usage(error: &clap::Error) -> u8 {
     if error.use_stderr() {
         let typed: Vec<String> = std::env::args().skip(1).collect();
-        let verb = typed.iter().find(|word| ["info", "map", "eval", "verify", "report"].contains(&word.as_str()));
+        let verb =
+            typed.iter().find(|word| ["info", "map", "shell", "eval", "verify", "report"].contains(&word.as_str()));
         let message = error.to_string();
         let json = typed.iter().any(|word| word == "--json");
         answer::print_early(verb.map(String::as_str), json, "usage", message.trim_end());
@@ -90,6 +93,7 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
     let answer = match verb {
         Verb::Info(options) => info::run(session, options),
         Verb::Map(options) => map::run(session, options, &mut outputs),
+        Verb::Shell(options) => shell::run(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),
         Verb::Report(options) => report::run(session, options, &mut outputs),

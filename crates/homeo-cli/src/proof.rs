@@ -1,13 +1,16 @@
 //! What the independent checker says, as JSON and in words.
 
+use std::io::{self, Cursor, Seek, Write};
 use std::path::Path;
 
-use homeo::certificate::{FoliationMap, read_map};
+use homeo::certificate::{FoliationMap, StoredMap, read_map};
+use homeo::input::SourceMesh;
 use homeo::progress::Progress;
 use homeo_verify::{Claim, Obstacle, Unreadable, Verdict, Witness, verify_bytes};
 use serde_json::{Map, Value, json};
 
 use crate::failure::{Exit, Failure, Result};
+use crate::outputs::Outputs;
 use crate::session::Session;
 
 /// How many elements of a witness people see.
@@ -20,6 +23,12 @@ pub fn claim_json(claim: &Claim) -> Value {
         "kind": claim.kind, "target": claim.target, "holds": true, "checked": checked,
         "statement": claim.statement, "limits": claim.limits, "source_sha256": claim.source_sha256,
     })
+}
+
+/// That it holds, in words.
+pub fn holds(claim: &Claim) -> String {
+    let checks: u64 = claim.checked.iter().map(|c| c.1).sum();
+    format!("holds ({checks} exact checks in {} rules)", claim.checked.len())
 }
 
 /// The witness as JSON.
@@ -64,8 +73,42 @@ pub fn unreadable(path: &Path, error: &Unreadable) -> Failure {
     Failure::input("unreadable-map", format!("{}: {error}", path.display()))
 }
 
+/// Where the bytes of a map go.
+pub trait Sink: Write + Seek {}
+impl<W: Write + Seek> Sink for W {}
+
+/// Writes a map where it will be, or only into memory, reads it back and has it checked.
+///
+/// # Errors
+/// When it cannot be written, or its certificate does not hold.
+pub fn write_and_check(
+    session: &Session,
+    path: Option<&Path>,
+    outputs: &mut Outputs,
+    write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+) -> Result<Claim> {
+    session.stage("write");
+    let bytes = match path {
+        Some(path) => {
+            let partial = outputs.stage(session, path, |out| write(out).map_err(|e| e.to_string()))?;
+            std::fs::read(&partial)
+                .map_err(|e| Failure::limits("cannot-write", format!("{} cannot be read back: {e}", path.display())))?
+        }
+        None => {
+            let mut memory = Cursor::new(Vec::new());
+            write(&mut memory).map_err(|e| Failure::bug(e.to_string()))?;
+            memory.into_inner()
+        }
+    };
+    session.check()?;
+    session.stage("certificate");
+    let claim = check_own(&bytes)?;
+    session.check()?;
+    Ok(claim)
+}
+
 /// Checks a map that this program has just made: anything but a proof is a bug.
-pub fn check_own(bytes: &[u8]) -> Result<Claim> {
+fn check_own(bytes: &[u8]) -> Result<Claim> {
     let bug = |what: String| {
         Failure::bug(format!("the map that was made does not pass its check; nothing was written: {what}"))
     };
@@ -85,7 +128,7 @@ pub fn read_bytes(session: &Session, path: &Path) -> Result<Vec<u8>> {
 }
 
 /// Reads a map that is to be used, and checks its certificate first.
-pub fn open_certified(session: &Session, path: &Path) -> Result<(FoliationMap, Claim)> {
+pub fn open_certified(session: &Session, path: &Path) -> Result<(StoredMap, Claim)> {
     let bytes = read_bytes(session, path)?;
     session.stage("certificate");
     let claim = match verify_bytes(&bytes) {
@@ -106,14 +149,17 @@ pub fn open_certified(session: &Session, path: &Path) -> Result<(FoliationMap, C
 }
 
 /// The `input` field for a map.
-pub fn map_json(map: &FoliationMap, path: &Path) -> Value {
-    let path = path.display().to_string();
+pub fn map_json(map: &StoredMap, path: &Path) -> Value {
     match map {
-        FoliationMap::Surface(map) => json!({
-            "path": path, "vertices": map.source().positions().len(), "triangles": map.source().complex().cell_count(),
-        }),
-        FoliationMap::Volume(map) => json!({
-            "path": path, "vertices": map.source().positions().len(), "tetrahedra": map.source().complex().cell_count(),
-        }),
+        StoredMap::Foliation(FoliationMap::Surface(map)) => source_json(map.source(), path),
+        StoredMap::Foliation(FoliationMap::Volume(map)) => source_json(map.source(), path),
+        StoredMap::Shell(shell) => source_json(shell.source(), path),
     }
+}
+
+fn source_json<const K: usize>(source: &SourceMesh<K>, path: &Path) -> Value {
+    let cells = if K == 3 { "triangles" } else { "tetrahedra" };
+    json!({
+        "path": path.display().to_string(), "vertices": source.positions().len(), cells: source.complex().cell_count(),
+    })
 }

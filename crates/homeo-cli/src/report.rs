@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use homeo::certificate::FoliationMap;
+use homeo::certificate::{FoliationMap, StoredMap};
 use homeo::export::{VerdictWords, report_of_map, write_report};
 use homeo::map::{Bijection, Target};
 use homeo::progress::Progress;
@@ -12,7 +12,7 @@ use serde_json::json;
 
 use crate::answer::Answer;
 use crate::args::ReportArgs;
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::outputs::{Outputs, check_target};
 use crate::proof;
 use crate::sampled::{self, Sampled};
@@ -23,6 +23,11 @@ use crate::text::{Lines, ratio, stages};
 pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Result<Answer> {
     check_target(&options.output, &[&options.map])?;
     let (map, claim) = proof::open_certified(session, &options.map)?;
+    let StoredMap::Foliation(map) = map else {
+        let message = "pages for shells are not made yet; write the layers of the shell with \
+                       `homeo shell MESH --layers PREFIX` and open them in a mesh viewer";
+        return Err(Failure::input("no-page", message));
+    };
     session.stage("sample");
     let sampled = sampled::sample(&map);
     session.check()?;

@@ -35,7 +35,19 @@ pub struct Session {
     /// Files to remove when the run does not come to its end.
     partial: Mutex<Vec<PathBuf>>,
     stop: AtomicU8,
+    time_limit: Mutex<TimeLimit>,
     phase: Mutex<Phase>,
+}
+
+/// What it means that the time is over.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum TimeLimit {
+    /// The run ends.
+    EndsRun,
+    /// The work is asked to end with what it has.
+    EndsWork,
+    /// Nothing.
+    Lifted,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -68,6 +80,7 @@ impl Session {
             facts: Mutex::default(),
             partial: Mutex::default(),
             stop: AtomicU8::new(RUNNING),
+            time_limit: Mutex::new(TimeLimit::EndsRun),
             phase: Mutex::new(Phase::Working),
         });
         let watched = Arc::clone(&session);
@@ -111,6 +124,18 @@ impl Session {
     /// Whether the run may go on.
     pub fn check(&self) -> Result<()> {
         if self.is_cancelled() { Err(self.stopped()) } else { Ok(()) }
+    }
+
+    /// From here on there is a result: the time limit only asks the work to end, as soon as it can.
+    pub fn let_time_end_work(&self) {
+        *locked(&self.time_limit) = TimeLimit::EndsWork;
+    }
+
+    /// The work has ended; its result is written however long that takes.
+    pub fn lift_time_limit(&self) {
+        *locked(&self.time_limit) = TimeLimit::Lifted;
+        // Any other reason to stop stays.
+        let _ = self.stop.compare_exchange(TIMEOUT, RUNNING, Ordering::SeqCst, Ordering::SeqCst);
     }
 
     /// Ends the stage that runs.
@@ -198,21 +223,38 @@ impl Session {
     }
 
     fn request_stop(&self, reason: u8) {
-        // The first reason stays.
-        let _ = self.stop.compare_exchange(RUNNING, reason, Ordering::SeqCst, Ordering::SeqCst);
+        // The gravest reason stays.
+        self.stop.fetch_max(reason, Ordering::SeqCst);
+    }
+
+    fn look_at_limits(&self) {
+        let time_limit = locked(&self.time_limit);
+        let is_over = |limit: f64| self.start.elapsed().as_secs_f64() > limit;
+        if *time_limit != TimeLimit::Lifted && self.common.timeout.is_some_and(is_over) {
+            self.request_stop(TIMEOUT);
+        }
+        drop(time_limit);
+        if self.common.memory.is_some_and(|limit| memory::current_bytes().is_some_and(|now| now > limit)) {
+            self.request_stop(MEMORY);
+        }
+    }
+
+    /// Whether the run has to end, not only the work.
+    fn must_end(&self) -> bool {
+        match self.stop.load(Ordering::SeqCst) {
+            RUNNING => false,
+            TIMEOUT => *locked(&self.time_limit) == TimeLimit::EndsRun,
+            _ => true,
+        }
     }
 
     fn watch(&self) {
         let mut noticed = None;
         loop {
             std::thread::sleep(WATCH);
-            if self.common.timeout.is_some_and(|limit| self.start.elapsed().as_secs_f64() > limit) {
-                self.request_stop(TIMEOUT);
-            }
-            if self.common.memory.is_some_and(|limit| memory::current_bytes().is_some_and(|now| now > limit)) {
-                self.request_stop(MEMORY);
-            }
-            if !self.is_cancelled() {
+            self.look_at_limits();
+            if !self.must_end() {
+                noticed = None;
                 continue;
             }
             if noticed.get_or_insert_with(Instant::now).elapsed() > GRACE {

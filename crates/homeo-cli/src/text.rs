@@ -1,5 +1,7 @@
 //! Aligned lines for people.
 
+use std::path::Path;
+
 /// Lines of a label and a value, the values in one column.
 #[derive(Default)]
 pub struct Lines {
@@ -33,6 +35,11 @@ pub fn yes_no(answer: bool) -> &'static str {
 /// `1 triangle`, `2 triangles`, `1 tetrahedron`, `2 tetrahedra`.
 pub fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// The last part of a path.
+pub fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 /// A ratio in few digits.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use homeo::certificate::read_map;
 use homeo::progress::Progress;
 use homeo_verify::{Claim, SourceMatch, Verdict, compare_source, verify_bytes};
 use serde_json::{Value, json};
@@ -33,7 +34,7 @@ pub fn run(session: &Session, options: &VerifyArgs) -> Result<Answer> {
         let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
         source = Some(compare(session, &bytes, mesh, requested)?);
     }
-    session.fact("input", described(&claim, &options.map));
+    session.fact("input", described(&claim, &bytes, &options.map));
     let fields = json!({
         "certificate": proof::claim_json(&claim),
         "source": source,
@@ -62,8 +63,11 @@ fn compare(session: &Session, bytes: &[u8], path: &Path, requested: Requested) -
     }
 }
 
-/// The counts of the source are among what was checked.
-fn described(claim: &Claim, path: &Path) -> Value {
+/// The counts of the source are among what was checked, but for shells.
+fn described(claim: &Claim, bytes: &[u8], path: &Path) -> Value {
+    if let ("shell", Ok(map)) = (claim.kind.as_str(), read_map(bytes)) {
+        return proof::map_json(&map, path);
+    }
     let count = |what: &str| claim.checked.iter().find(|(name, _)| name.starts_with(what)).map(|&(_, n)| n);
     let cells = if matches!(claim.target.as_str(), "square" | "disk") { "triangles" } else { "tetrahedra" };
     json!({"path": path.display().to_string(), "vertices": count("source vertices"), cells: count("source cells")})

@@ -50,7 +50,7 @@ fn polygon_violation(mesh: &MeshInput) -> Option<Value> {
         return None;
     }
     let message =
-        format!("{}. Triangles are numbered here as --triangulate cuts them", crate::map::polygons_message(mesh));
+        format!("{}. Triangles are numbered here as --triangulate cuts them", crate::refuse::polygons_message(mesh));
     Some(violation("polygon-not-triangle", "error", "polygon", mesh.polygons.clone(), mesh.polygon_count, message))
 }
 

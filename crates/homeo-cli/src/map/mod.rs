@@ -4,7 +4,6 @@ mod refuse;
 mod regions;
 mod vtu;
 
-use std::io::{BufWriter, Cursor};
 use std::path::Path;
 
 use homeo::certificate::{FoliationMap, Provenance, write_map};
@@ -23,9 +22,7 @@ use crate::proof;
 use crate::report;
 use crate::sampled::{self, Sampled};
 use crate::session::Session;
-use crate::text::{Lines, counted, ratio, stages};
-
-pub use refuse::polygons_message;
+use crate::text::{Lines, counted, file_name, ratio, stages};
 
 /// Makes a map, proves it and stages its files.
 pub fn run(session: &Session, options: &MapArgs, outputs: &mut Outputs) -> Result<Answer> {
@@ -49,8 +46,10 @@ pub fn run(session: &Session, options: &MapArgs, outputs: &mut Outputs) -> Resul
     refuse::unfit(session, &mesh, target, options.triangulate)?;
     session.check()?;
     let (map, info) = construct(session, &mesh, target, &params)?;
-    let claim = write_and_check(session, options, &map, &params, outputs)?;
-    session.check()?;
+    let provenance = provenance(options, &params);
+    let claim = proof::write_and_check(session, options.output.as_deref(), outputs, |mut out| {
+        write_map(&map, &provenance, &mut out)
+    })?;
     session.stage("sample");
     let sampled = sampled::sample(&map);
     session.check()?;
@@ -127,38 +126,10 @@ fn explain(session: &Session, error: FoliationError) -> Failure {
     }
 }
 
-/// Writes the map where it will be, reads it back and has it checked.
-fn write_and_check(
-    session: &Session,
-    options: &MapArgs,
-    map: &FoliationMap,
-    params: &FoliationParams,
-    outputs: &mut Outputs,
-) -> Result<Claim> {
-    session.stage("write");
-    let provenance = provenance(options, params);
-    let bytes = match &options.output {
-        Some(path) => {
-            let write = |out: &mut BufWriter<_>| write_map(map, &provenance, out).map_err(|e| e.to_string());
-            let partial = outputs.stage(session, path, write)?;
-            std::fs::read(&partial)
-                .map_err(|e| Failure::limits("cannot-write", format!("{} cannot be read back: {e}", path.display())))?
-        }
-        None => {
-            let mut memory = Cursor::new(Vec::new());
-            write_map(map, &provenance, &mut memory).map_err(|e| Failure::bug(e.to_string()))?;
-            memory.into_inner()
-        }
-    };
-    session.check()?;
-    session.stage("certificate");
-    proof::check_own(&bytes)
-}
-
 /// Nothing that depends on the machine, so that a run repeats bit for bit.
 fn provenance(options: &MapArgs, params: &FoliationParams) -> Provenance {
     Provenance {
-        source_name: options.input.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default(),
+        source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
             "seed": params.seed, "refinements": params.refinements, "restarts": params.restarts,
@@ -191,8 +162,7 @@ fn words(
     sampled: &Sampled,
 ) -> String {
     let mut lines = Lines::default();
-    let checks: u64 = claim.checked.iter().map(|c| c.1).sum();
-    lines.add("certificate", format!("holds ({checks} exact checks in {} rules)", claim.checked.len()));
+    lines.add("certificate", proof::holds(claim));
     let refined = match info.local_refinements + info.barycentric_refinements {
         0 => String::new(),
         extra => format!(", {} where the front got stuck", counted(extra, "refinement", "refinements")),

@@ -1,36 +1,22 @@
 //! Which meshes cannot be mapped, with the first offending elements and what to do.
 
 use homeo::map::Target;
-use homeo_core::topology::{
-    Answer, Options, Severity, SurfaceReport, Violation, VolumeReport, analyse_tetrahedra, analyse_triangles,
-};
-use serde_json::json;
+use homeo_core::topology::{Answer, Options, SurfaceReport, VolumeReport, analyse_tetrahedra, analyse_triangles};
 
 use crate::failure::{Failure, Result};
 use crate::mesh_input::{Cells, MeshInput};
+use crate::refuse::{Need, unless_fit, unless_simplices};
 use crate::session::Session;
 
-/// Faults that do not touch the complex itself: said, but no reason to refuse.
+/// Faults that do not touch the complex itself.
 const HARMLESS: [&str; 1] = ["self-intersection"];
-
-/// No reason to refuse, but often the cause of one.
-const HINTS: [&str; 1] = ["coincident-vertices"];
 
 /// Refuses a mesh that is not what the target needs.
 ///
 /// # Errors
 /// All that is wrong with it.
 pub fn unfit(session: &Session, mesh: &MeshInput, target: Target, triangulate: bool) -> Result<()> {
-    if mesh.file.space == 0 {
-        let message =
-            "the file holds no coordinates; a map needs a mesh with coordinates (`homeo info` takes such files)";
-        return Err(Failure::input("no-coordinates", message));
-    }
-    if mesh.polygon_count > 0 && !triangulate {
-        return Err(
-            Failure::input("polygon-not-triangle", polygons_message(mesh)).with("elements", mesh.polygons.clone())
-        );
-    }
+    unless_simplices(mesh, triangulate)?;
     let (violations, shape) = match (&mesh.cells, target.dimension()) {
         (Cells::Triangles(complex), 2) => {
             let report = analyse_triangles(&mesh.file.positions, complex, Options::default());
@@ -44,38 +30,15 @@ pub fn unfit(session: &Session, mesh: &MeshInput, target: Target, triangulate: b
         }
         (cells, _) => return Err(wrong_dimension(cells, target)),
     };
-    let matters = |v: &&Violation| v.severity == Severity::Error && !HARMLESS.contains(&v.code);
-    let faults: Vec<&Violation> = violations.iter().filter(matters).collect();
-    let is_fit = faults.is_empty() && shape.is_none();
-    let is_hint = |v: &&Violation| !is_fit && HINTS.contains(&v.code);
-    for violation in violations.iter().filter(|v| !matters(v) && !is_hint(v) && v.severity != Severity::Info) {
-        session.display().note(&sentence(violation));
-    }
-    if is_fit {
-        return Ok(());
-    }
     let needed = if target.dimension() == 2 { "disk" } else { "ball" };
-    let mut message = format!("the mesh is not a {needed} that can be mapped onto the {target}:");
-    let hints = violations.iter().filter(is_hint).map(sentence);
-    let said = faults.iter().copied().map(sentence).chain(shape.iter().cloned()).chain(hints);
-    said.for_each(|line| message.push_str(&format!("\n  {line}")));
-    let code = faults.first().map_or(if needed == "disk" { "not-a-disk" } else { "not-a-ball" }, |v| v.code);
-    Err(Failure::input(code, message).with("violations", json!(violations)).with("needed", needed))
-}
-
-fn sentence(violation: &Violation) -> String {
-    format!("{}: {}", violation.code, violation.message)
-}
-
-/// The sentence on polygons that are no triangles.
-pub fn polygons_message(mesh: &MeshInput) -> String {
-    let first: Vec<String> = mesh.polygons.iter().take(3).map(u32::to_string).collect();
-    let more = if mesh.polygon_count > first.len() { ", ..." } else { "" };
-    format!(
-        "{} polygons ({}{more}) have other than three corners; give --triangulate to cut them",
-        mesh.polygon_count,
-        first.join(", ")
-    )
+    let need = Need {
+        name: needed,
+        code: if needed == "disk" { "not-a-disk" } else { "not-a-ball" },
+        heading: format!("the mesh is not a {needed} that can be mapped onto the {target}:"),
+        harmless: &HARMLESS,
+        grave: &[],
+    };
+    unless_fit(session, &violations, shape, &need)
 }
 
 fn wrong_dimension(cells: &Cells, target: Target) -> Failure {

@@ -8,11 +8,20 @@ mod read;
 mod write;
 
 pub use read::{MapFileError, read_map};
-pub use write::{content_sha256, write_map};
+pub use write::{content_sha256, write_map, write_shell};
 
 use homeo_core::number::Rational;
 
-use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, Target};
+use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, Shell, Target};
+
+/// What a map file holds.
+#[derive(Debug)]
+pub enum StoredMap {
+    /// A map onto a standard shape.
+    Foliation(FoliationMap),
+    /// A shell with its projection.
+    Shell(Shell),
+}
 
 /// A foliation map of a surface or of a volume.
 #[derive(Debug)]

@@ -9,10 +9,10 @@ use homeo_core::mesh::{Adjacency, CellId, SimplicialComplex, VertexId};
 use serde_json::Value;
 use zip::{CompressionMethod, ZipArchive};
 
-use super::FoliationMap;
 use super::npy::decode;
+use super::{FoliationMap, StoredMap};
 use crate::input::SourceMesh;
-use crate::map::{Centre, Foliation, FoliationParts, Section, Target, is_flat};
+use crate::map::{Centre, Foliation, FoliationParts, Section, Shell, ShellParts, Target, is_flat};
 use crate::refine::{Carrier, RefinedMesh};
 
 /// Why a file is no map that can be evaluated.
@@ -41,7 +41,7 @@ pub enum MapFileError {
 ///
 /// # Errors
 /// [`MapFileError`]; memory stays within a small multiple of the file's size.
-pub fn read_map(bytes: &[u8]) -> Result<FoliationMap, MapFileError> {
+pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
     let mut file = File::open(bytes)?;
     let manifest = file.manifest()?;
     let text = |key: &str| manifest.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
@@ -49,16 +49,25 @@ pub fn read_map(bytes: &[u8]) -> Result<FoliationMap, MapFileError> {
     if text("format") != "homeo" || number("version") != Some(1) {
         return Err(MapFileError::Manifest("this program reads format `homeo`, version 1".to_owned()));
     }
-    if text("kind") != "foliation" {
-        return Err(MapFileError::Manifest(format!("maps of kind `{}` are not known", text("kind"))));
-    }
-    let target: Target = text("target").parse().map_err(|e| MapFileError::Manifest(format!("target: {e}")))?;
-    if number("dimension") != Some(target.dimension() as u64) {
-        return Err(MapFileError::Manifest(format!("a {target} has dimension {}", target.dimension())));
-    }
-    match target.dimension() {
-        2 => Ok(FoliationMap::Surface(file.foliation::<3>(target, &manifest)?)),
-        _ => Ok(FoliationMap::Volume(file.foliation::<4>(target, &manifest)?)),
+    let is_of_dimension = |target: &str, dimension: usize| {
+        let what = || MapFileError::Manifest(format!("a map onto a {target} has dimension {dimension}"));
+        if number("dimension") == Some(dimension as u64) { Ok(()) } else { Err(what()) }
+    };
+    match text("kind").as_str() {
+        "foliation" => {
+            let target: Target = text("target").parse().map_err(|e| MapFileError::Manifest(format!("target: {e}")))?;
+            is_of_dimension(target.name(), target.dimension())?;
+            Ok(StoredMap::Foliation(match target.dimension() {
+                2 => FoliationMap::Surface(file.foliation::<3>(target, &manifest)?),
+                _ => FoliationMap::Volume(file.foliation::<4>(target, &manifest)?),
+            }))
+        }
+        "shell" if text("target") == "shell" => {
+            is_of_dimension("shell", 2)?;
+            Ok(StoredMap::Shell(file.shell()?))
+        }
+        "shell" => Err(MapFileError::Manifest("a shell has the target `shell`".to_owned())),
+        other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
     }
 }
 
@@ -123,17 +132,38 @@ impl<'b> File<'b> {
         SimplicialComplex::from_indices(vertices, &cells).map_err(|e| MapFileError::Inconsistent(e.to_string()))
     }
 
-    fn foliation<const K: usize>(&mut self, target: Target, manifest: &Value) -> Result<Foliation<K>, MapFileError> {
-        let positions = self.rows::<f64, 3>("source_positions")?;
-        if let Some(row) = positions.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
-            return inconsistent(format!("source vertex {row} is not finite"));
+    fn points(&mut self, name: &str) -> Result<Vec<[f64; 3]>, MapFileError> {
+        let points = self.rows::<f64, 3>(name)?;
+        match points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+            Some(row) => inconsistent(format!("row {row} of {name} is not finite")),
+            None => Ok(points),
         }
+    }
+
+    fn source<const K: usize>(&mut self) -> Result<SourceMesh<K>, MapFileError> {
+        let positions = self.points("source_positions")?;
         let complex = self.cells::<K>("source_cells", positions.len())?;
         let flat = complex.cells().iter().position(|cell| is_flat(&cell.map(|v| positions[v.index()])));
-        if let Some(cell) = flat {
-            return inconsistent(format!("source cell {cell} is flat"));
+        match flat {
+            Some(cell) => inconsistent(format!("source cell {cell} is flat")),
+            None => Ok(SourceMesh::new(positions, complex)),
         }
-        let source = SourceMesh::new(positions, complex);
+    }
+
+    fn shell(&mut self) -> Result<Shell, MapFileError> {
+        let source = self.source::<3>()?;
+        let [bottom, middle, top] = ["shell_bottom", "shell_middle", "shell_top"].map(|name| self.points(name));
+        let (bottom, middle, top) = (bottom?, middle?, top?);
+        if bottom.len() != middle.len() || middle.len() != top.len() {
+            return inconsistent("every column of a shell needs a bottom, a middle and a top");
+        }
+        let prisms = self.cells::<3>("prisms", middle.len())?;
+        let prisms = prisms.cells().iter().map(|corners| corners.map(VertexId::raw)).collect();
+        Ok(Shell::from_parts(source, ShellParts { bottom, middle, top, prisms }))
+    }
+
+    fn foliation<const K: usize>(&mut self, target: Target, manifest: &Value) -> Result<Foliation<K>, MapFileError> {
+        let source = self.source::<K>()?;
         let mesh = if self.has("cells") { self.refined(&source)? } else { RefinedMesh::unrefined(&source) };
         let adjacency = mesh.complex().adjacency().map_err(|e| MapFileError::Inconsistent(e.to_string()))?;
         let count = mesh.complex().cell_count();

@@ -11,7 +11,7 @@ use zip::{CompressionMethod, ZipWriter};
 use super::npy::{Element, encode};
 use super::{FoliationMap, Provenance, either};
 use crate::input::SourceMesh;
-use crate::map::{Bijection, Foliation, Section};
+use crate::map::{Bijection, Centre, Foliation, Section, Shell};
 
 /// Writes a map with its certificate. The same map gives the same bytes.
 ///
@@ -19,6 +19,22 @@ use crate::map::{Bijection, Foliation, Section};
 /// When `out` cannot be written.
 pub fn write_map(map: &FoliationMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
     either!(map, map => write_foliation(map, provenance, out))
+}
+
+/// Writes a shell with what its certificate needs. The same shell gives the same bytes.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub fn write_shell(shell: &Shell, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
+    let (source, parts) = (shell.source(), shell.parts());
+    let claim = Claim { kind: "shell", target: "shell", centre: None, length_unit: 1.0 };
+    let mut archive = Archive::begin(source, &claim, provenance, out)?;
+    for (name, points) in [("bottom", &parts.bottom), ("middle", &parts.middle), ("top", &parts.top)] {
+        let flat = points.as_flattened().iter().copied();
+        archive.array(&format!("shell_{name}"), &[points.len(), 3], flat)?;
+    }
+    archive.array("prisms", &[parts.prisms.len(), 3], parts.prisms.as_flattened().iter().copied())?;
+    archive.finish()
 }
 
 /// SHA-256 of the arrays of a source mesh as the map file stores them, in hexadecimal digits.
@@ -45,7 +61,36 @@ struct Archive<'w, W: Write + Seek> {
     zip: ZipWriter<&'w mut W>,
 }
 
-impl<W: Write + Seek> Archive<'_, W> {
+/// What the manifest says of a map beside its source and provenance.
+struct Claim {
+    kind: &'static str,
+    target: &'static str,
+    centre: Option<Centre>,
+    length_unit: f64,
+}
+
+impl<'w, W: Write + Seek> Archive<'w, W> {
+    /// Begins a map file: manifest and source.
+    fn begin<const K: usize>(
+        source: &SourceMesh<K>,
+        claim: &Claim,
+        provenance: &Provenance,
+        out: &'w mut W,
+    ) -> io::Result<Self> {
+        let mut archive = Self { zip: ZipWriter::new(out) };
+        let manifest = serde_json::to_vec_pretty(&manifest(source, claim, provenance)).map_err(io::Error::other)?;
+        archive.add("manifest.json", &manifest)?;
+        let (positions, cells) = (source.positions(), source.complex().cells());
+        archive.array("source_positions", &[positions.len(), 3], positions.as_flattened().iter().copied())?;
+        archive.array("source_cells", &[cells.len(), K], numbers(cells).into_iter())?;
+        Ok(archive)
+    }
+
+    fn finish(self) -> io::Result<()> {
+        self.zip.finish().map_err(io::Error::other)?;
+        Ok(())
+    }
+
     fn add(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
         self.zip.start_file(name, options).map_err(io::Error::other)?;
@@ -67,17 +112,10 @@ fn write_foliation<const K: usize>(
     provenance: &Provenance,
     out: &mut (impl Write + Seek),
 ) -> io::Result<()> {
-    let mut archive = Archive { zip: ZipWriter::new(out) };
-    let manifest = serde_json::to_vec_pretty(&manifest(map, provenance)).map_err(io::Error::other)?;
-    archive.add("manifest.json", &manifest)?;
     let (source, parts) = (map.source(), map.parts());
-    let positions: Vec<f64> = source.positions().iter().flatten().copied().collect();
-    archive.array("source_positions", &[source.positions().len(), 3], positions.into_iter())?;
-    archive.array(
-        "source_cells",
-        &[source.complex().cell_count(), K],
-        numbers(source.complex().cells()).into_iter(),
-    )?;
+    let (centre, length_unit) = (parts.centre, parts.length_unit);
+    let claim = Claim { kind: "foliation", target: map.target().name(), centre, length_unit };
+    let mut archive = Archive::begin(source, &claim, provenance, out)?;
     if !parts.mesh.is_unrefined() {
         write_refinement(map, &mut archive)?;
     }
@@ -98,8 +136,7 @@ fn write_foliation<const K: usize>(
         }
         Section::Centre => {}
     }
-    archive.zip.finish().map_err(io::Error::other)?;
-    Ok(())
+    archive.finish()
 }
 
 fn write_refinement<const K: usize>(
@@ -120,22 +157,21 @@ fn numbers<const K: usize>(cells: &[[VertexId; K]]) -> Vec<u32> {
     cells.iter().flatten().map(|v| v.raw()).collect()
 }
 
-fn manifest<const K: usize>(map: &Foliation<K>, provenance: &Provenance) -> serde_json::Value {
-    let (source, parts) = (map.source(), map.parts());
+fn manifest<const K: usize>(source: &SourceMesh<K>, claim: &Claim, provenance: &Provenance) -> serde_json::Value {
     json!({
         "format": "homeo",
         "version": 1,
-        "kind": "foliation",
+        "kind": claim.kind,
         "dimension": K - 1,
-        "target": map.target().name(),
-        "centre": parts.centre.map(|centre| json!({"cell": centre.cell.raw(), "length": centre.length})),
+        "target": claim.target,
+        "centre": claim.centre.map(|centre| json!({"cell": centre.cell.raw(), "length": centre.length})),
         "source": {
             "name": provenance.source_name,
             "vertices": source.positions().len(),
             "cells": source.complex().cell_count(),
             "content_sha256": content_sha256(source),
         },
-        "length_unit": parts.length_unit,
+        "length_unit": claim.length_unit,
         "construction": {"program": provenance.program, "options": provenance.options},
     })
 }

@@ -3,13 +3,14 @@
 use std::io::{Cursor, Read, Write};
 use std::panic::catch_unwind;
 
-use homeo::certificate::{FoliationMap, read_map};
+use homeo::certificate::{FoliationMap, StoredMap, read_map};
 use homeo::map::{Bijection, Foliation, Target};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::random::Random;
 use crate::shapes::{Shape, balls, disks};
+use crate::shells;
 
 fn file<const K: usize>(shape: &Shape<K>, target: Target) -> Vec<u8>
 where
@@ -27,6 +28,8 @@ fn files() -> Vec<Vec<u8>> {
         file(&balls::two_tetrahedra(), Target::Ball),
         file(&balls::octahedron(0.0), Target::Ball),
         file(&balls::octahedron_with_axis(), Target::Cube),
+        shells::bytes_of(&shells::built(&shells::sphere(0), 0)),
+        shells::bytes_of(&shells::built(&shells::singular(), 30)),
     ]
 }
 
@@ -55,11 +58,20 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
 }
 
 /// Asks a map whatever it is; any answer will do, and errors too.
-fn ask(map: &FoliationMap) {
+fn ask(map: &StoredMap) {
     for point in [[0.0; 3], [0.3, 0.2, 0.0], [0.25, 0.25, 0.25], [1.0, 0.0, 0.0], [0.7, 0.1, 0.1]] {
-        let _ = (map.forward(point), map.inverse(point));
         let exact = crate::points::exact(point);
-        let _ = (map.forward_exact(&exact), map.inverse_exact(&exact));
+        match map {
+            StoredMap::Foliation(map) => {
+                let _ = (map.forward(point), map.inverse(point));
+                let _ = (map.forward_exact(&exact), map.inverse_exact(&exact));
+            }
+            StoredMap::Shell(shell) => {
+                let _ = (shell.to_middle(point), shell.to_source(point), shell.is_inside(point));
+                let at = shell.project_exact(&exact);
+                let _ = at.map(|at| (shell.unproject_exact(&at), shell.to_source_exact(&at)));
+            }
+        }
     }
 }
 

@@ -12,10 +12,11 @@ mod random;
 mod refinement;
 mod refused;
 mod shapes;
+mod shells;
 
 use std::io::Cursor;
 
-use homeo::certificate::{FoliationMap, Provenance, read_map, write_map};
+use homeo::certificate::{FoliationMap, Provenance, StoredMap, read_map, write_map};
 use homeo::construct::foliation::{FoliationParams, build};
 use homeo::input::SourceMesh;
 use homeo::map::{Bijection, Foliation, Target};
@@ -68,7 +69,7 @@ where
     let bytes = bytes_of(&map);
     let again = in_threads(2, || FoliationMap::from(built(&source, target)));
     assert!(bytes == bytes_of(&again), "the file differs when built again with two threads");
-    let read = read_map(&bytes).expect("what was written can be read");
+    let Ok(StoredMap::Foliation(read)) = read_map(&bytes) else { panic!("what was written can be read") };
     assert!(bytes == bytes_of(&read), "the file differs when read and written");
     law("after reading", laws::answers_are_the_same(&map, &read, &from, &to));
     match verify_bytes(&bytes) {

@@ -1,11 +1,12 @@
 //! `homeo eval`: images of points, both ways, in floating point or exactly.
 
-use homeo::certificate::FoliationMap;
-use homeo::map::{Bijection, Enclosed, EvaluationError};
+mod images;
+
+use homeo::certificate::{FoliationMap, StoredMap};
+use homeo::map::Bijection;
 use homeo::progress::Progress;
 use homeo_core::number::Rational;
 use homeo_verify::Claim;
-use rayon::prelude::*;
 use serde_json::json;
 
 use crate::answer::Answer;
@@ -16,6 +17,8 @@ use crate::points::{self, PointFormat, Table, csv, npy};
 use crate::proof;
 use crate::session::Session;
 use crate::text::{Lines, stages};
+
+use images::{Direction, Image, NoImage};
 
 /// Points that are evaluated between two looks at the clock.
 const CHUNK: usize = 4096;
@@ -87,11 +90,16 @@ fn answer(session: &Session, options: &EvalArgs, claim: &Claim, done: Done, outp
     Ok(Answer::new(fields, lines.below(&format!("{way} under {}", options.map.display()))))
 }
 
-fn floating(session: &Session, options: &EvalArgs, map: &FoliationMap, format: PointFormat) -> Result<Done> {
+fn direction_of(options: &EvalArgs) -> Direction {
+    if options.inverse { Direction::Inverse } else { Direction::Forward }
+}
+
+fn floating(session: &Session, options: &EvalArgs, map: &StoredMap, format: PointFormat) -> Result<Done> {
     let points = points::read(&options.points)?;
     check_columns(options, map, points.columns, |row| points.rows[row][2] == 0.0, points.rows.len())?;
-    let batch = |rows: &[[f64; 3]]| if options.inverse { map.inverse_batch(rows) } else { map.forward_batch(rows) };
-    let answers: Vec<std::result::Result<Enclosed, EvaluationError>> = in_chunks(session, &points.rows, CHUNK, batch)?;
+    // What is asked of a shell is computed exactly, and then rounded.
+    let size = if matches!(map, StoredMap::Shell(_)) { EXACT_CHUNK } else { CHUNK };
+    let answers = in_chunks(session, &points.rows, size, |rows| images::floating(map, direction_of(options), rows))?;
     let outside = count_outside(options, &answers)?;
     let max_radius = answers.iter().flatten().map(|a| a.radius).fold(0.0, f64::max);
     let rows = answers.into_iter().map(|a| a.map_or([f64::NAN; 3], |a| a.point)).collect();
@@ -103,14 +111,13 @@ fn floating(session: &Session, options: &EvalArgs, map: &FoliationMap, format: P
     Ok(Done { bytes, count: table.rows.len(), outside, max_radius })
 }
 
-fn exact(session: &Session, options: &EvalArgs, map: &FoliationMap) -> Result<Done> {
+fn exact(session: &Session, options: &EvalArgs, map: &StoredMap) -> Result<Done> {
     let bytes = points::bytes_of(&options.points)?;
     let points = csv::parse(&bytes, csv::rational)
         .map_err(|what| Failure::input("points", format!("{}: {what}", options.points.display())))?;
     check_columns(options, map, points.columns, |row| points.rows[row][2].is_zero(), points.rows.len())?;
-    let one = |p: &[Rational; 3]| if options.inverse { map.inverse_exact(p) } else { map.forward_exact(p) };
-    let batch = |rows: &[[Rational; 3]]| rows.par_iter().map(one).collect::<Vec<_>>();
-    let answers = in_chunks(session, &points.rows, EXACT_CHUNK, batch)?;
+    let answers =
+        in_chunks(session, &points.rows, EXACT_CHUNK, |rows| images::exact(map, direction_of(options), rows))?;
     let outside = count_outside(options, &answers)?;
     let rows: Vec<Option<[Rational; 3]>> = answers.into_iter().map(std::result::Result::ok).collect();
     let bytes = csv::write_rationals(output_columns(options, map), &rows);
@@ -133,46 +140,55 @@ fn in_chunks<P, A>(session: &Session, rows: &[P], size: usize, batch: impl Fn(&[
 /// Two columns are points of the plane; three are points of space, in the plane `z = 0` where a plane shape is asked for.
 fn check_columns(
     options: &EvalArgs,
-    map: &FoliationMap,
+    map: &StoredMap,
     columns: usize,
     is_planar: impl Fn(usize) -> bool,
     rows: usize,
 ) -> Result<()> {
     let wrong = |what: String| Failure::input("points", format!("{}: {what}", options.points.display()));
-    let target = map.target();
-    if options.inverse && target.dimension() == 2 {
+    let (name, dimension, flat_source) = match map {
+        StoredMap::Foliation(map) => (map.target().name(), map.target().dimension(), is_flat(map)),
+        StoredMap::Shell(_) => ("shell", 3, false),
+    };
+    if options.inverse && dimension == 2 {
         return match (0..rows).find(|&row| !is_planar(row)) {
             Some(row) => {
-                Err(wrong(format!("row {}: the third coordinate of a point of the {target} must be 0", row + 1)))
+                Err(wrong(format!("row {}: the third coordinate of a point of the {name} must be 0", row + 1)))
             }
             None => Ok(()),
         };
     }
-    let flat_source = match map {
-        FoliationMap::Surface(map) => map.source().positions().iter().all(|p| p[2] == 0.0),
-        FoliationMap::Volume(_) => false,
-    };
     if columns == 2 && (options.inverse || !flat_source) {
-        let where_to = if options.inverse { target.name() } else { "mesh" };
+        let is_in_target = options.inverse || matches!(map, StoredMap::Shell(_));
+        let where_to = if is_in_target { name } else { "mesh" };
         return Err(wrong(format!("points of the {where_to} have three coordinates: x,y,z")));
     }
     Ok(())
 }
 
-fn output_columns(options: &EvalArgs, map: &FoliationMap) -> usize {
-    if options.inverse { 3 } else { map.target().dimension() }
+/// Whether the source lies in the plane `z = 0`.
+fn is_flat(map: &FoliationMap) -> bool {
+    match map {
+        FoliationMap::Surface(map) => map.source().positions().iter().all(|p| p[2] == 0.0),
+        FoliationMap::Volume(_) => false,
+    }
+}
+
+fn output_columns(options: &EvalArgs, map: &StoredMap) -> usize {
+    match map {
+        StoredMap::Foliation(map) if !options.inverse => map.target().dimension(),
+        _ => 3,
+    }
 }
 
 /// How many points have no image; an error where that is not allowed.
-fn count_outside<A>(options: &EvalArgs, answers: &[std::result::Result<A, EvaluationError>]) -> Result<usize> {
-    let tolerated =
-        |error: &EvaluationError| options.outside == Outside::Nan && !matches!(error, EvaluationError::Ambiguous(..));
+fn count_outside<I>(options: &EvalArgs, answers: &[Image<I>]) -> Result<usize> {
+    let tolerated = |error: &NoImage| options.outside == Outside::Nan && !error.is_ambiguous();
     let mut wrong = answers.iter().enumerate().filter_map(|(row, a)| a.as_ref().err().map(|e| (row, e)));
     if let Some((row, error)) = wrong.clone().find(|(_, e)| !tolerated(e)) {
         let others = wrong.clone().count() - 1;
         let more = if others > 0 { format!(" ({others} more rows have no image)") } else { String::new() };
-        let advice =
-            if matches!(error, EvaluationError::Ambiguous(..)) { "" } else { "; --outside nan gives NaN instead" };
+        let advice = if error.is_ambiguous() { "" } else { "; --outside nan gives NaN instead" };
         let message = format!("{}: row {}: {error}{more}{advice}", options.points.display(), row + 1);
         return Err(Failure::input("outside", message).with("row", row + 1).with("rows_without_image", others + 1));
     }

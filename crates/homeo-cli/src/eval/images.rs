@@ -1,0 +1,93 @@
+//! Images under whatever a map file holds.
+
+use std::fmt;
+
+use homeo::certificate::{FoliationMap, StoredMap};
+use homeo::map::{Bijection, Enclosed, EvaluationError, Shell, ShellEvaluationError};
+use homeo_core::number::Rational;
+use rayon::prelude::*;
+
+/// Which way points go.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// From the mesh onto the target; in a shell, onto the middle surface.
+    Forward,
+    /// Back to the mesh; in a shell, onto the source surface.
+    Inverse,
+}
+
+/// Why a point has no image.
+pub enum NoImage {
+    Map(EvaluationError),
+    Shell(ShellEvaluationError),
+}
+
+impl NoImage {
+    /// Whether the point has several.
+    pub fn is_ambiguous(&self) -> bool {
+        matches!(self, Self::Map(EvaluationError::Ambiguous(..)) | Self::Shell(ShellEvaluationError::Ambiguous(..)))
+    }
+}
+
+impl fmt::Display for NoImage {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Map(error) => error.fmt(formatter),
+            Self::Shell(error) => error.fmt(formatter),
+        }
+    }
+}
+
+/// An image or none.
+pub type Image<I> = Result<I, NoImage>;
+
+/// Images in floating point, in parallel; the order is that of the points.
+pub fn floating(map: &StoredMap, direction: Direction, points: &[[f64; 3]]) -> Vec<Image<Enclosed>> {
+    match map {
+        StoredMap::Foliation(map) => {
+            let images = match direction {
+                Direction::Forward => map.forward_batch(points),
+                Direction::Inverse => map.inverse_batch(points),
+            };
+            images.into_iter().map(|image| image.map_err(NoImage::Map)).collect()
+        }
+        StoredMap::Shell(shell) => {
+            let one = |&point: &[f64; 3]| match direction {
+                Direction::Forward => shell.to_middle(point),
+                Direction::Inverse => shell.to_source(point),
+            };
+            points.par_iter().map(|point| one(point).map_err(NoImage::Shell)).collect()
+        }
+    }
+}
+
+/// Images in rationals, likewise.
+pub fn exact(map: &StoredMap, direction: Direction, points: &[[Rational; 3]]) -> Vec<Image<[Rational; 3]>> {
+    let one = |point: &[Rational; 3]| match map {
+        StoredMap::Foliation(map) => exact_in_map(map, direction, point).map_err(NoImage::Map),
+        StoredMap::Shell(shell) => exact_in_shell(shell, direction, point).map_err(NoImage::Shell),
+    };
+    points.par_iter().map(one).collect()
+}
+
+fn exact_in_map(
+    map: &FoliationMap,
+    direction: Direction,
+    point: &[Rational; 3],
+) -> Result<[Rational; 3], EvaluationError> {
+    match direction {
+        Direction::Forward => map.forward_exact(point),
+        Direction::Inverse => map.inverse_exact(point),
+    }
+}
+
+fn exact_in_shell(
+    shell: &Shell,
+    direction: Direction,
+    point: &[Rational; 3],
+) -> Result<[Rational; 3], ShellEvaluationError> {
+    match direction {
+        Direction::Forward => shell.unproject_exact(&shell.to_middle_exact(point)?),
+        Direction::Inverse => Ok(shell.to_source_exact(&shell.project_exact(point)?)?.point),
+    }
+}

@@ -1,0 +1,277 @@
+//! `homeo shell`: what it makes, what it refuses, and what others do with it.
+
+mod common;
+
+use common::{CLOSED, Folder, cubes, quads};
+use homeo_core::number::Rational;
+
+/// A bumpy torus of `n` by `m` quads cut into triangles, as OBJ; its coordinates are multiples of 1/1024.
+fn torus(n: usize, m: usize) -> String {
+    let mut text = String::new();
+    let turn = |i: usize, n: usize| std::f64::consts::TAU * i as f64 / n as f64;
+    for i in 0..n {
+        for j in 0..m {
+            let (u, v) = (turn(i, n), turn(j, m));
+            let radius = 0.4 * (1.0 + 0.2 * (3.0 * u + 2.0 * v).sin());
+            let across = 1.0 + radius * v.cos();
+            let [x, y, z] =
+                [across * u.cos(), across * u.sin(), radius * v.sin()].map(|x| (x * 1024.0).round() / 1024.0);
+            text.push_str(&format!("v {x} {y} {z}\n"));
+        }
+    }
+    for i in 0..n {
+        for j in 0..m {
+            let corner = |i: usize, j: usize| i % n * m + j % m + 1;
+            let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+            text.push_str(&format!("f {a} {b} {c}\nf {a} {c} {d}\n"));
+        }
+    }
+    text
+}
+
+/// The boundary of four cubes in a chain round a point at which no direction leaves the surface, as OBJ.
+fn singular() -> String {
+    let cubes = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]];
+    let number = |[x, y, z]: [i32; 3]| 9 * x + 3 * y + z + 1;
+    let mut text = String::new();
+    (0..27).for_each(|i| text.push_str(&format!("v {} {} {}\n", i / 9, i / 3 % 3, i % 3)));
+    for cube in cubes {
+        for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
+            let mut beyond = cube;
+            beyond[axis] += 2 * side - 1;
+            let corner = |u: i32, v: i32| {
+                let mut corner = cube;
+                corner[axis] += side;
+                corner[(axis + 1) % 3] += u;
+                corner[(axis + 2) % 3] += v;
+                number(corner)
+            };
+            let mut quad = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            if side == 0 {
+                quad.reverse();
+            }
+            let [a, b, c, d] = quad;
+            if !cubes.contains(&beyond) {
+                text.push_str(&format!("f {a} {b} {c}\nf {a} {c} {d}\n"));
+            }
+        }
+    }
+    text
+}
+
+/// The vertices of an OBJ file as a table of points.
+fn vertices(obj: &str) -> String {
+    let rows = obj.lines().filter_map(|line| line.strip_prefix("v "));
+    rows.fold("x,y,z\n".to_owned(), |text, row| text + &row.replace(' ', ",") + "\n")
+}
+
+fn rationals(table: &str) -> Vec<Rational> {
+    let numbers = table.lines().skip(1).flat_map(|row| row.split(','));
+    numbers.map(|x| x.parse().unwrap()).collect()
+}
+
+#[test]
+fn shells_are_certified() {
+    for (obj, pinched) in [(torus(24, 10), 0), (singular(), 1)] {
+        let folder = Folder::new();
+        let first = obj.lines().next().unwrap();
+        folder.write("m.obj", &obj).write("other.obj", obj.replacen(first, &format!("{first}1"), 1));
+        let report = folder.line("shell m.obj -o m.homeo --json -q").expect(0).json();
+        let (certificate, quality) = (&report["certificate"], &report["quality"]);
+        assert_eq!((&report["ok"], &certificate["holds"]), (&true.into(), &true.into()));
+        assert_eq!((&certificate["kind"], &report["target"]), (&"shell".into(), &"shell".into()));
+        assert_eq!(report["input"]["triangles"], quality["first_prisms"]);
+        assert_eq!((&quality["pinched"], &quality["cut_short"]), (&pinched.into(), &false.into()));
+        assert_eq!(quality["prisms"], quality["middle"]["triangles"]);
+        for count in ["collapses", "flips", "rounds"] {
+            assert!(quality[count].is_u64(), "{count} is missing in {quality}");
+        }
+        let [prisms, first, columns] = [&quality["prisms"], &quality["first_prisms"], &quality["middle"]["vertices"]]
+            .map(|count| count.as_u64().unwrap());
+        assert!(prisms <= first && columns >= 4);
+        for stage in ["read", "check", "directions", "thickness", "simplify", "write", "certificate", "total"] {
+            assert!(report["seconds"][stage].is_number(), "{stage} is missing in {}", report["seconds"]);
+        }
+        let verified = folder.line("verify m.homeo --source m.obj --json -q").expect(0).json();
+        assert_eq!((&verified["source"]["same"], &verified["certificate"]), (&true.into(), certificate));
+        assert_eq!(verified["input"]["triangles"], report["input"]["triangles"]);
+        assert_eq!(verified["input"]["vertices"], report["input"]["vertices"]);
+        let refused = folder.line("verify m.homeo --source other.obj --json -q").expect(3).json();
+        assert_eq!(refused["error"]["code"], "other-source");
+    }
+}
+
+#[test]
+fn exact_round_trip_gives_the_source_vertices() {
+    for obj in [torus(24, 10), singular()] {
+        let folder = Folder::new();
+        let used: Vec<&str> = obj.lines().filter(|line| line.starts_with('f')).collect();
+        let is_used = |number: usize| used.iter().any(|f| f.split(' ').any(|corner| corner == number.to_string()));
+        let lines = obj.lines().filter(|line| line.starts_with('v')).enumerate().filter(|(v, _)| is_used(v + 1));
+        let points = vertices(&lines.fold(String::new(), |text, (_, line)| text + line + "\n"));
+        folder.write("m.obj", &obj).write("p.csv", &points);
+        folder.line("shell m.obj -o m.homeo -q").expect(0);
+        folder.line("eval m.homeo --points p.csv --exact -o middle.csv -q").expect(0);
+        folder.line("eval m.homeo --points middle.csv --exact --inverse -o back.csv -q").expect(0);
+        folder.line("eval m.homeo --points middle.csv --exact -o again.csv -q").expect(0);
+        assert_eq!(rationals(&folder.text("back.csv")), rationals(&points), "there and back");
+        assert_eq!(folder.read("again.csv"), folder.read("middle.csv"), "the middle stays where it is");
+        folder.line("eval m.homeo --points p.csv --exact --inverse -o same.csv -q").expect(0);
+        assert_eq!(rationals(&folder.text("same.csv")), rationals(&points), "the source stays where it is");
+        let report = folder.line("eval m.homeo --points p.csv -o float.csv --json -q").expect(0).json();
+        assert!(report["error"]["max_radius"].as_f64().unwrap() < 1e-12);
+        let exact = rationals(&folder.text("middle.csv"));
+        let float = folder.text("float.csv");
+        let float = float.lines().skip(1).flat_map(|row| row.split(',')).map(|x| x.parse::<f64>().unwrap());
+        assert!(float.zip(&exact).all(|(near, exact)| (near - exact.to_f64()).abs() < 1e-12));
+    }
+}
+
+#[test]
+fn points_outside_are_errors_or_counted() {
+    let folder = Folder::new();
+    folder.write("m.obj", torus(16, 8)).write("p.csv", "x,y,z\n9,9,9\n0,0,0\n");
+    folder.line("shell m.obj -o m.homeo -q").expect(0);
+    let run = folder.line("eval m.homeo --points p.csv").expect(3);
+    assert!(run.stderr.contains("row 1") && run.stderr.contains("outside the shell"), "{}", run.stderr);
+    for options in ["", "--inverse", "--exact", "--inverse --exact"] {
+        let run = folder.line(&format!("eval m.homeo --points p.csv --outside nan {options}")).expect(0);
+        assert!(run.stderr.contains("2 of 2 points"), "{}", run.stderr);
+        assert_eq!(run.stdout, "x,y,z\nNaN,NaN,NaN\nNaN,NaN,NaN\n");
+    }
+    folder.write("flat.csv", "x,y\n1,0\n");
+    let run = folder.line("eval m.homeo --points flat.csv").expect(3);
+    assert!(run.stderr.contains("three coordinates"), "{}", run.stderr);
+}
+
+#[test]
+fn unfit_meshes_are_refused_with_their_elements() {
+    let moved = |[x, y, z]: [f64; 3], first: usize| {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let points = corners.map(|c| format!("v {} {} {}\n", c[0] + x, c[1] + y, c[2] + z)).concat();
+        let face = |f: [usize; 3]| format!("f {} {} {}\n", f[0] + first, f[1] + first, f[2] + first);
+        points + &[[1, 3, 2], [1, 2, 4], [2, 3, 4], [3, 1, 4]].map(face).concat()
+    };
+    let two = |offset: [f64; 3]| moved([0.0; 3], 0) + &moved(offset, 4);
+    let open = torus(16, 8).replacen("f 1 9 10\n", "", 1);
+    let cases: [(&str, &str, &str, &str); 8] = [
+        ("open.obj", &open, "open-boundary", "close its 3 boundary edges"),
+        ("solid.mesh", &cubes(&[[0, 0, 0]]), "wrong-dimension", "tetrahedra"),
+        ("quads.obj", &quads(2), "polygon-not-triangle", "--triangulate"),
+        ("crossing.obj", &two([0.25, 0.125, 0.125]), "self-intersection", "cell"),
+        ("touching.obj", &two([1.0, 0.0, 0.0]), "coincident-vertices", "vertex 4"),
+        ("flipped.off", &CLOSED.replace("3 0 2 1", "3 0 1 2"), "inconsistent-orientation", "0"),
+        ("empty.off", "OFF\n0 0 0\n", "no-elements", "neither"),
+        ("cut.off", "OFF\n4 4 0\n0 0 0\n1 0", "unexpected-end", "cut.off"),
+    ];
+    for (name, content, code, words) in cases {
+        let folder = Folder::new();
+        let run = folder.write(name, content).homeo(&["shell", name, "-o", "m.homeo", "--layers", "m", "--json"]);
+        let run = run.expect(3);
+        assert_eq!(run.json()["error"]["code"], code, "{name}: {}", run.stdout);
+        assert!(run.stderr.contains(words), "{name}: {}", run.stderr);
+        assert_eq!(folder.names(), [name], "nothing is left behind");
+    }
+    let folder = Folder::new();
+    folder.write("flipped.off", CLOSED.replace("3 0 2 1", "3 0 1 2"));
+    folder.line("shell flipped.off --orient -o m.homeo -q").expect(0);
+    folder.line("verify m.homeo --source flipped.off --orient -q").expect(0);
+    folder.line("verify m.homeo --source flipped.off -q").expect(3);
+}
+
+#[test]
+fn a_time_limit_gives_a_valid_shell_or_nothing() {
+    let folder = Folder::new();
+    folder.write("m.obj", torus(90, 40));
+    for limit in ["0.000001", "0.1", "0.2", "0.4", "0.8", "1.6"] {
+        let run = folder.line(&format!("shell m.obj -o m.homeo --layers m --json --timeout {limit}"));
+        let report = run.json();
+        if run.code == 0 {
+            assert_eq!(report["certificate"]["holds"], true);
+            assert_eq!(report["quality"]["cut_short"], run.stderr.contains("cut simplification short"));
+            folder.line("verify m.homeo --source m.obj -q").expect(0);
+            folder.names().iter().filter(|name| *name != "m.obj").for_each(|name| {
+                std::fs::remove_file(folder.path(name)).unwrap();
+            });
+        } else {
+            let report = run.expect(4).json();
+            assert_eq!(report["error"]["code"], "timeout");
+            assert_eq!(folder.names(), ["m.obj"]);
+        }
+    }
+    let run = folder.line("shell m.obj -o m.homeo --json --memory 4K");
+    if run.code != 0 {
+        assert_eq!(run.expect(4).json()["error"]["code"], "memory");
+        assert_eq!(folder.names(), ["m.obj"]);
+    }
+}
+
+#[test]
+fn bytes_do_not_depend_on_threads() {
+    let folder = Folder::new();
+    folder.write("m.obj", torus(24, 10)).write("p.csv", vertices(&torus(24, 10)));
+    for threads in ["1", "2"] {
+        folder.line(&format!("shell m.obj -o {threads}.homeo --threads {threads} -q")).expect(0);
+        folder.line(&format!("eval 1.homeo --points p.csv -o {threads}.csv --threads {threads} -q")).expect(0);
+    }
+    assert!(folder.read("1.homeo") == folder.read("2.homeo"), "the shells differ");
+    assert_eq!(folder.text("1.csv"), folder.text("2.csv"));
+}
+
+#[test]
+fn layers_are_meshes_and_limits_are_kept() {
+    let folder = Folder::new();
+    folder.write("m.obj", torus(24, 10));
+    let all = folder.line("shell m.obj --rounds 0 --layers all --json -q").expect(0).json();
+    assert_eq!(all["layers"], serde_json::json!(["all_bottom.obj", "all_middle.obj", "all_top.obj"]));
+    assert_eq!((&all["quality"]["prisms"], &all["quality"]["rounds"]), (&480.into(), &0.into()));
+    assert_eq!(folder.names(), ["all_bottom.obj", "all_middle.obj", "all_top.obj", "m.obj"]);
+    let points = |name: &str| rationals(&vertices(&folder.text(name)));
+    let sorted = |mut numbers: Vec<Rational>| {
+        numbers.sort();
+        numbers
+    };
+    assert_eq!(sorted(points("all_middle.obj")), sorted(points("m.obj")), "the middle is the source");
+    for layer in ["bottom", "middle", "top"] {
+        let info = folder.line(&format!("info all_{layer}.obj --json -q")).expect(0).json();
+        assert_eq!((&info["triangles"], &info["closed"], &info["genus"]), (&480.into(), &true.into(), &1.into()));
+    }
+    let few = folder.line("shell m.obj --prisms 400 --json -q").expect(0).json();
+    let prisms = few["quality"]["prisms"].as_u64().unwrap();
+    assert!(prisms <= 400 && prisms > 300, "{prisms}");
+    let text = folder.line("shell m.obj --thickness 0.01 -q").expect(0).stdout;
+    assert!(text.contains("one-to-one and onto, proved") && text.contains("give -o FILE.homeo"), "{text}");
+}
+
+#[test]
+fn a_page_is_not_made_yet() {
+    let folder = Folder::new();
+    folder.write("m.obj", torus(16, 8));
+    folder.line("shell m.obj -o m.homeo -q").expect(0);
+    let run = folder.line("report m.homeo -o m.html --json").expect(3);
+    assert_eq!(run.json()["error"]["code"], "no-page");
+    assert!(run.stderr.contains("shell MESH --layers"), "{}", run.stderr);
+    assert_eq!(folder.names(), ["m.homeo", "m.obj"]);
+}
+
+#[test]
+fn wrong_usage_is_told_apart() {
+    let folder = Folder::new();
+    folder.write("m.obj", CLOSED);
+    for options in [
+        "--thickness 0",
+        "--thickness -1",
+        "--thickness nan",
+        "--thickness inf",
+        "--prisms -1",
+        "-o m.obj",
+        "-o nowhere/m.homeo",
+        "--layers nowhere/m",
+        "-o m_top.obj --layers m",
+        "--onto cube",
+    ] {
+        folder.line(&format!("shell m.obj {options}")).expect(2);
+    }
+    folder.line("shell").expect(2);
+    assert_eq!(folder.names(), ["m.obj"]);
+}
