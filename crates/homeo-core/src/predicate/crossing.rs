@@ -91,7 +91,7 @@ fn separates(points: &[Point; 7], triple: [usize; 3]) -> bool {
         let body = usize::from(i >= 4);
         seen[body][sign as usize] = true;
         held[body] += usize::from(sign == Sign::Zero);
-        if (seen[0][0] && (seen[0][2] || seen[1][0])) || (seen[1][2] && (seen[0][2] || seen[1][0])) {
+        if (seen[0][0] || seen[1][2]) && (seen[0][2] || seen[1][0]) {
             return false;
         }
     }

@@ -16,6 +16,7 @@ use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, Shell, Target}
 
 /// What a map file holds.
 #[derive(Debug)]
+#[allow(clippy::large_enum_variant)] // there is one at a time, and its arrays are elsewhere
 pub enum StoredMap {
     /// A map onto a standard shape.
     Foliation(FoliationMap),
