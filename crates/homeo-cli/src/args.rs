@@ -57,7 +57,7 @@ pub enum Verb {
     Info(InfoArgs),
     /// Map a disk onto the square or disk, or a ball onto the cube or ball, one-to-one and onto
     Map(MapArgs),
-    /// Make a prismatic shell round a closed surface, with its one-to-one projection
+    /// Make a prismatic shell round a surface, with its one-to-one projection
     Shell(ShellArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
@@ -151,7 +151,7 @@ The certificate is checked on the bytes that were written; only then do they get
 The middle surface of the first shell is the surface itself; simplification takes prisms away.
 When --timeout is reached then, the shell so far is checked and written.")]
 pub struct ShellArgs {
-    /// A closed surface that does not cross itself
+    /// A surface, closed or open, that does not cross or touch itself
     #[arg(value_name = "MESH")]
     pub input: PathBuf,
     /// The map file to write

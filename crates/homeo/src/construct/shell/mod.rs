@@ -3,8 +3,8 @@
 //! Theorem:     with positive prisms, the surface between bottom and top and crossed by all pillars in one sense, and one
 //!              point with one preimage and one fibre that meets it once per component, the projection is a homeomorphism.
 //! Source:      Jiang, Schneider, Zorin, Panozzo 2020 (doi 10.1145/3414685.3417769), sections 3.1 to 3.4.
-//! Differences: no beveling: triangles that only touch a prism do not count, which is decided exactly; columns keep
-//!              vertices of the source as their middles; directions by the point of a convex hull nearest to the origin.
+//! Differences: no beveling: triangles that only touch a prism do not count, which is decided exactly; boundary
+//!              columns are fixed; directions by the point of a convex hull nearest to the origin.
 //! Arithmetic:  every accepted operation is decided by exact signs; directions, lengths and energies only guide.
 //! Cost:        about proportional to the triangles, times what a prism comes to hold.
 //! Fails when:  the surface crosses or touches itself, or two singular vertices are neighbours -> [`ShellError`].
