@@ -1,5 +1,9 @@
-//! Exact rationals and enclosing intervals.
+//! Exact rationals, enclosing intervals, and what formulas over both need.
 
+mod interval;
 mod rational;
+mod scalar;
 
+pub use interval::Interval;
 pub use rational::{ParseRationalError, Rational};
+pub use scalar::Scalar;

@@ -133,16 +133,38 @@ fn check(surface: &Surface, rounds: usize) {
         let middle = stored.to_middle_exact(&point).and_then(|at| stored.unproject_exact(&at)).expect("in the shell");
         let back = stored.project_exact(&middle).and_then(|at| stored.to_source_exact(&at)).expect("on the middle");
         assert_eq!(back.point, point, "there and back");
-        let near = stored.to_middle(point.each_ref().map(Rational::to_f64));
         if rounds == 0 {
             assert_eq!(middle, point, "the middle is the source");
-        } else if let Ok(near) = near {
-            let is_near = |k: usize| (near.point[k] - middle[k].to_f64()).abs() < 1e-9;
-            assert!((0..3).all(is_near), "{near:?} is not near {middle:?}");
         }
+        check_enclosures(&stored, point.each_ref().map(Rational::to_f64));
     }
     let far = stored.to_middle([100.0; 3]);
     assert_eq!(far.unwrap_err(), ShellEvaluationError::Outside, "far away");
+}
+
+/// Floating-point images of a point hold the exact ones, closely.
+fn check_enclosures(shell: &Shell, place: [f64; 3]) {
+    let Ok(at) = shell.project_exact(&crate::points::exact(place)) else { return };
+    let enclosed = shell.project(place).expect("the exact projection exists");
+    assert_eq!(enclosed.prism, at.prism, "the prism");
+    for (interval, exact) in enclosed.weights.iter().zip(&at.weights).chain([(&enclosed.height, &at.height)]) {
+        let [low, high] = [interval.low(), interval.high()].map(|end| Rational::from_f64(end).expect("finite"));
+        assert!(low <= *exact && *exact <= high, "{interval:?} does not hold {exact}");
+        assert!(interval.high() - interval.low() < 1e-9, "{interval:?} says nothing");
+    }
+    let images = [
+        (shell.to_middle(place), shell.to_section_exact(&at)),
+        (shell.to_section(place), shell.to_section_exact(&at)),
+        (shell.to_source(place), shell.to_source_exact(&at)),
+    ];
+    for (near, exact) in images {
+        let (near, exact) = (near.expect("an image"), exact.expect("an image").point);
+        for axis in 0..3 {
+            let miss = &crate::points::exact(near.point)[axis] - &exact[axis];
+            assert!(miss.to_f64().abs() <= near.radius, "{near:?} does not hold {exact:?}");
+        }
+        assert!(near.radius < 1e-11, "{near:?} says little");
+    }
 }
 
 /// Vertices, and a point inside each triangle.
