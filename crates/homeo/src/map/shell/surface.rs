@@ -1,0 +1,47 @@
+//! A surface in a shell, with a tree over its triangles.
+
+use homeo_core::number::Scalar;
+use homeo_core::spatial::{Aabb, Tree};
+
+use super::SurfacePoint;
+use super::space::zero;
+use crate::input::SourceMesh;
+
+type Point = [f64; 3];
+
+#[derive(Debug)]
+pub(super) struct Surface {
+    pub mesh: SourceMesh<3>,
+    tree: Tree,
+}
+
+impl Surface {
+    pub fn new(mesh: SourceMesh<3>) -> Self {
+        let corner = |v: homeo_core::mesh::VertexId| mesh.positions()[v.index()];
+        let boxes: Vec<Aabb> = mesh.complex().cells().iter().map(|cell| Aabb::of(&cell.map(corner))).collect();
+        Self { tree: Tree::new(&boxes), mesh }
+    }
+
+    pub fn corners(&self, triangle: u32) -> [Point; 3] {
+        self.mesh.complex().cells()[triangle as usize].map(|v| self.mesh.positions()[v.index()])
+    }
+
+    /// The triangles whose boxes meet that of some rounded points, ascending.
+    pub fn near(&self, points: &[Point]) -> Vec<u32> {
+        let hull = Aabb::of(points);
+        let region = Aabb { low: hull.low.map(f64::next_down), high: hull.high.map(f64::next_up) };
+        let mut candidates = Vec::new();
+        self.tree.query_box(&region, |t| candidates.push(t as u32));
+        candidates.sort_unstable();
+        candidates
+    }
+
+    /// The vertex at a place that is a double.
+    pub fn at_vertex<T: Scalar>(&self, candidates: &[u32], place: Point, point: &[T; 3]) -> Option<SurfacePoint<T>> {
+        candidates.iter().find_map(|&triangle| {
+            let k = self.corners(triangle).iter().position(|corner| *corner == place)?;
+            let weights = std::array::from_fn(|i| if i == k { T::from_f64(1.0) } else { zero() });
+            Some(SurfacePoint { triangle, weights, point: point.clone() })
+        })
+    }
+}
