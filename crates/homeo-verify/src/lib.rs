@@ -134,6 +134,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::Disk => ("disk", "diamond |x| + |y| <= 1, and by a fixed homeomorphism onto the unit disk"),
         Target::Ball => ("ball", "tetrahedron of the format, and by a fixed homeomorphism onto a round ball"),
         Target::Shell => ("shell", "middle surface"),
+        Target::Section => ("section", "other section"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
     let mut statement = format!(
@@ -145,10 +146,13 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
     if let MapData::Shell(shell) = &map.data {
         statement = format!(
             "The projection along the pillars is a homeomorphism from the surface of {vertices} vertices and {cells} \
-             triangles onto the {onto} of {} prisms ({theorem}).",
-            shell.prisms.len() / 3
+             triangles onto the {onto} of {} ({theorem}).",
+            match &shell.section {
+                None => format!("{} prisms", shell.prisms.len() / 3),
+                Some((points, cells)) => format!("{} vertices and {} triangles", points.len(), cells.len() / 3),
+            }
         );
-        overlaps = "Away from the surface the shell may overlap itself in space; whether it does was not decided.";
+        overlaps = "Away from the sections the shell may overlap itself in space; whether it does was not decided.";
     }
     let limits = [
         "The claim is about the complex with these cells and the exact rational map that the file defines.",

@@ -14,7 +14,10 @@ pub(crate) enum Target {
     Disk,
     Cube,
     Ball,
+    /// The middle surface of a shell.
     Shell,
+    /// Another section of a shell.
+    Section,
 }
 
 impl Target {
@@ -95,7 +98,8 @@ impl Manifest {
         let is_possible = !is_radial || manifest.kind == Kind::Foliation;
         readable(is_possible, "only a foliation can reach the disk or the ball")?;
         let is_shell = manifest.kind == Kind::Shell;
-        readable(is_shell == (manifest.target == Target::Shell), "kind shell and target shell belong together")?;
+        let is_in_shell = matches!(manifest.target, Target::Shell | Target::Section);
+        readable(is_shell == is_in_shell, "kind shell and targets shell and section belong together")?;
         Ok(manifest)
     }
 }

@@ -46,6 +46,8 @@ pub(crate) struct ShellData {
     pub(crate) levels: [Vec<Point>; 3],
     /// The columns of the prisms, one prism after the other.
     pub(crate) prisms: Vec<u32>,
+    /// The points and triangles of another section, if it is the target.
+    pub(crate) section: Option<(Vec<Point>, Vec<u32>)>,
 }
 
 impl MapFile {
@@ -61,7 +63,7 @@ impl MapFile {
             false => None,
         };
         let data = if manifest.kind == Kind::Shell {
-            MapData::Shell(ShellData::read(&mut archive)?)
+            MapData::Shell(ShellData::read(&mut archive, manifest.target)?)
         } else if manifest.kind == Kind::PiecewiseLinear {
             let count = positions.len() + refinement.as_ref().map_or(0, |r| r.carriers.len());
             MapData::PiecewiseLinear(Array::take(&mut archive, "target_positions")?.read_points(Some(count), size - 1)?)
@@ -90,10 +92,12 @@ impl MapFile {
         carrier.into_iter().filter(|&(_, weight)| weight > 0)
     }
 
-    /// Where a vertex, or the middle of a column, lies, rounded, for drawings only; `None` if nowhere.
+    /// Where a vertex, the middle of a column, or a vertex of the other section lies, rounded, for drawings only; `None` if nowhere.
     pub(crate) fn place(&self, vertex: u32) -> Option<Point> {
         if let (MapData::Shell(shell), Some(v)) = (&self.data, (vertex as usize).checked_sub(self.positions.len())) {
-            return shell.levels[1].get(v).copied().filter(|p| p.iter().all(|x| x.is_finite()));
+            let on_section = |v: usize| shell.section.as_ref()?.0.get(v).copied();
+            let place = shell.levels[1].get(v).copied().or_else(|| on_section(v.checked_sub(shell.levels[1].len())?));
+            return place.filter(|p| p.iter().all(|x| x.is_finite()));
         }
         let (mut sum, mut total) = ([0.0; 3], 0.0);
         for (source_vertex, weight) in self.carrier(vertex) {
@@ -149,12 +153,18 @@ impl FoliationData {
 }
 
 impl ShellData {
-    fn read(archive: &mut Archive) -> Result<Self, Unreadable> {
+    fn read(archive: &mut Archive, target: Target) -> Result<Self, Unreadable> {
         let bottom = Array::take(archive, "shell_bottom")?.read_points(None, 3)?;
         let count = Some(bottom.len());
         let middle = Array::take(archive, "shell_middle")?.read_points(count, 3)?;
         let top = Array::take(archive, "shell_top")?.read_points(count, 3)?;
         let prisms = Array::take(archive, "prisms")?.read(U4, None, 3)?;
-        Ok(ShellData { levels: [bottom, middle, top], prisms })
+        let section = if target == Target::Section {
+            let positions = Array::take(archive, "section_positions")?.read_points(None, 3)?;
+            Some((positions, Array::take(archive, "section_cells")?.read(U4, None, 3)?))
+        } else {
+            None
+        };
+        Ok(ShellData { levels: [bottom, middle, top], prisms, section })
     }
 }

@@ -6,7 +6,7 @@
 //!
 //! A *corner* is a point of a column: its number and its level, 0 bottom, 1 middle, 2 top. A pinched column has
 //! level 0 only. Slab `2 q` is the lower, slab `2 q + 1` the upper half of prism `q`. Witnesses count prisms after the
-//! triangles, and columns after the vertices of the source.
+//! triangles, and columns after the vertices of the source; those of another section come last.
 //!
 //! Surfaces may have boundary edges, which both have in common. A directed boundary edge is known by its slot; as no two
 //! boundary vertices are at one point, also by the point where it starts.
@@ -44,29 +44,41 @@ struct Shell<'a> {
     triangles: BoxTree,
 }
 
-/// Checks all rules of a shell.
+/// Checks all rules of a shell for its source, and for the other section if there is one: then the projection of the one,
+/// followed by the inverse of the other's, is a homeomorphism too.
 pub(crate) fn check_shell(map: &MapFile, data: &ShellData) -> Checked<Vec<(&'static str, u64)>> {
-    check_finite(&map.positions)?;
-    let source = check_surface(&map.cells, map.positions.len(), "source")?;
-    let corners = |cell: &[u32]| [0, 1, 2].map(|i| map.positions[cell[i] as usize]);
+    let mut checked = check_section(&map.positions, &map.cells, data)?;
+    if let Some((positions, cells)) = &data.section {
+        let counts = [map.cells.len() / 3, map.positions.len()];
+        let others = check_section(positions, cells, data).map_err(|stop| number_section(stop, data, counts))?;
+        checked.iter_mut().zip(others).for_each(|((_, count), (_, more))| *count += more);
+    }
+    Ok(checked)
+}
+
+/// Checks all rules of a shell for a surface in it.
+fn check_section(positions: &[Point], cells: &[u32], data: &ShellData) -> Checked<Vec<(&'static str, u64)>> {
+    check_finite(positions)?;
+    let source = check_surface(cells, positions.len(), "source")?;
+    let corners = |cell: &[u32]| [0, 1, 2].map(|i| positions[cell[i] as usize]);
     for (c, cell) in source.cells().enumerate() {
         let [p, q, r] = corners(cell);
         check(!is_flat_triangle(p, q, r), "L1", "a triangle has area zero", &[c], cell)?;
     }
-    let counted_after_source = |stop| count_after(stop, source.count(), map.positions.len());
+    let counted_after_source = |stop| count_after(stop, source.count(), positions.len());
     let levels = &data.levels;
     levels.iter().try_for_each(|level| check_finite(level)).map_err(counted_after_source)?;
     let prisms = check_surface(&data.prisms, levels[0].len(), "middle surface").map_err(counted_after_source)?;
-    let of_source = boundary_by_points(&source, &map.positions, "source")?;
+    let of_source = boundary_by_points(&source, positions, "source")?;
     let of_middle = boundary_by_points(&prisms, &levels[1], "middle surface").map_err(counted_after_source)?;
     check_included(&of_source, &of_middle, &source, "source")?;
     check_included(&of_middle, &of_source, &prisms, "middle surface").map_err(counted_after_source)?;
     let boundary = of_source.values().zip(of_middle.values()).map(|(a, b)| [a.1, b.1]).collect();
     let boxes: Vec<_> = source.cells().map(|cell| bounds(&corners(cell))).collect();
     let triangles = BoxTree::new(&boxes);
-    let shell = Shell { positions: &map.positions, source, levels, prisms, boundary, triangles };
+    let shell = Shell { positions, source, levels, prisms, boundary, triangles };
     Ok(vec![
-        ("vertices and columns with finite coordinates (rule S1)", (map.positions.len() + levels[0].len()) as u64),
+        ("vertices and columns with finite coordinates (rule S1)", (positions.len() + levels[0].len()) as u64),
         ("triangles of the source, an oriented surface (rules S2, L1)", shell.source.count() as u64),
         ("prisms over the middle, an oriented surface (rules S2, L1)", shell.prisms.count() as u64),
         ("boundary edges that both surfaces have (rule L1)", shell.boundary.len() as u64),
@@ -77,6 +89,22 @@ pub(crate) fn check_shell(map: &MapFile, data: &ShellData) -> Checked<Vec<(&'sta
         ("components of the source with a point that the shell covers once (rule L5)", shell.check_preimages()?),
         ("components of the middle with a fibre that meets the source once (rule L6)", shell.check_fibres()?),
     ])
+}
+
+/// The witness with the numbers that the section's triangles and vertices have: behind those of source and shell.
+fn number_section(stop: Stop, data: &ShellData, [source_cells, source_vertices]: [usize; 2]) -> Stop {
+    let Stop::Refuted(mut witness) = stop else { return stop };
+    let Some((positions, cells)) = &data.section else { return Stop::Refuted(witness) };
+    let renumbered = |number: u32, own: usize, source: usize, of_shell: usize| match (number as usize).checked_sub(own)
+    {
+        None => number.saturating_add((source + of_shell) as u32),
+        Some(in_shell) => (source + in_shell) as u32,
+    };
+    let (prisms, columns) = (data.prisms.len() / 3, data.levels[0].len());
+    witness.cells.iter_mut().for_each(|c| *c = renumbered(*c, cells.len() / 3, source_cells, prisms));
+    witness.vertices.iter_mut().for_each(|v| *v = renumbered(*v, positions.len(), source_vertices, columns));
+    witness.message = format!("the other section in the place of the source: {}", witness.message);
+    Stop::Refuted(witness)
 }
 
 /// S2 and L1: indices, and an oriented surface by its links.

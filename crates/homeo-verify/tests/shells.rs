@@ -380,6 +380,7 @@ fn surfaces_that_touch_in_a_pinched_corner() {
 
 const MUTANTS: usize = 3500;
 const OPEN_MUTANTS: usize = 1500;
+const SECTION_MUTANTS: usize = 800;
 
 fn change_float(random: &mut Random, x: f64) -> f64 {
     match random.below(8) {
@@ -529,6 +530,80 @@ fn mutants_of_open_shells_are_certified_exactly_when_the_oracle_finds_them_valid
         let count: usize = tally.rules.iter().filter(|(rule, _)| rule.contains(words)).map(|(_, n)| n).sum();
         assert!(count >= 10, "{words}: {count}");
     }
+}
+
+/// The same shells, with their source as the other section.
+fn with_sections() -> Vec<(&'static str, Map)> {
+    let mut shells: Vec<(&str, Map)> = all_shells().into_iter().filter(|(_, map)| is_small(map)).collect();
+    for (_, map) in &mut shells {
+        map.section = Some((map.positions.clone(), map.source_cells.clone()));
+        map.manifest["target"] = json!("section");
+    }
+    shells
+}
+
+#[test]
+fn sections_are_certified() {
+    for (name, map) in with_sections() {
+        let Ok(Verdict::Certified(claim)) = verify_bytes(&map.bytes()) else { panic!("{name}") };
+        let count = map.source_cells.len();
+        assert_eq!(claim.target, "section");
+        assert!(
+            claim.statement.contains(&format!("{count} triangles onto the other section of")),
+            "{}",
+            claim.statement
+        );
+        let triangles = claim.checked.iter().find(|(what, _)| what.starts_with("triangles of the source"));
+        assert_eq!(triangles.map(|(_, n)| *n), Some(2 * count as u64), "both surfaces are checked");
+    }
+    let (_, mut map) = with_sections().remove(0);
+    map.manifest["target"] = json!("shell");
+    assert_unreadable(&map.bytes(), "does not belong");
+    (map.manifest["target"], map.section) = (json!("section"), None);
+    assert_unreadable(&map.bytes(), "section_positions");
+}
+
+/// Elements of the section are numbered behind those of source and shell.
+#[test]
+fn witnesses_on_the_section() {
+    let (_, mut map) = with_sections().into_iter().find(|(name, _)| *name == "octahedron").expect("it is there");
+    let (vertices, columns) = (map.positions.len() as u32, map.levels[0].len() as u32);
+    let section = map.section.as_mut().expect("it has one");
+    section.0[2] = vec![f64::NAN, 0.0, 0.0];
+    let witness = assert_refuted(&map, "S1", "the other section");
+    assert_eq!(witness.vertices, [vertices + columns + 2]);
+    let (source, prisms) = (map.source_cells.len() as u32, map.prisms.len() as u32);
+    let section = map.section.as_mut().expect("it has one");
+    section.0[2] = map.positions[2].iter().map(|x| 4.0 * x).collect();
+    let witness = assert_refuted(&map, "L3", "the other section");
+    assert!(
+        witness.cells[0] >= source + prisms && (source..source + prisms).contains(&witness.cells[1]),
+        "{witness:?}"
+    );
+}
+
+#[test]
+fn mutants_of_sections_are_certified_exactly_when_the_oracle_finds_them_valid() {
+    let tally = judge(with_sections(), SECTION_MUTANTS, 13, |random, map| {
+        let columns = map.levels[0].len();
+        let (positions, cells) = map.section.as_mut().expect("it has one");
+        match random.below(4) {
+            0 | 1 => {
+                change_points(random, positions);
+                "section positions"
+            }
+            2 => {
+                change_cells(random, cells, positions.len());
+                "section triangles"
+            }
+            _ => {
+                let (level, v) = (random.below(3), random.below(columns));
+                change_points(random, &mut map.levels[level][v..=v]);
+                "points of columns"
+            }
+        }
+    });
+    assert!(tally.kinds.len() == 3 && tally.kinds.values().all(|counts| counts[0] >= 10 && counts[1] >= 50));
 }
 
 /// How many mutants were certified, refuted, undecided, unreadable, by their kind; and refuted, by rule and message.

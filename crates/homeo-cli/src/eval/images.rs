@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Which way points go.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// From the mesh onto the target; in a shell, onto the middle surface.
+    /// From the mesh onto the target; in a shell, onto its other section, or onto the middle surface.
     Forward,
     /// Back to the mesh; in a shell, onto the source surface.
     Inverse,
@@ -53,7 +53,7 @@ pub fn floating(map: &StoredMap, direction: Direction, points: &[[f64; 3]]) -> V
         }
         StoredMap::Shell(shell) => {
             let one = |&point: &[f64; 3]| match direction {
-                Direction::Forward => shell.to_middle(point),
+                Direction::Forward => shell.to_section(point),
                 Direction::Inverse => shell.to_source(point),
             };
             points.par_iter().map(|point| one(point).map_err(NoImage::Shell)).collect()
@@ -87,7 +87,7 @@ fn exact_in_shell(
     point: &[Rational; 3],
 ) -> Result<[Rational; 3], ShellEvaluationError> {
     match direction {
-        Direction::Forward => shell.unproject_exact(&shell.to_middle_exact(point)?),
+        Direction::Forward => Ok(shell.to_section_exact(&shell.project_exact(point)?)?.point),
         Direction::Inverse => Ok(shell.to_source_exact(&shell.project_exact(point)?)?.point),
     }
 }

@@ -97,9 +97,7 @@ fn direction_of(options: &EvalArgs) -> Direction {
 fn floating(session: &Session, options: &EvalArgs, map: &StoredMap, format: PointFormat) -> Result<Done> {
     let points = points::read(&options.points)?;
     check_columns(options, map, points.columns, |row| points.rows[row][2] == 0.0, points.rows.len())?;
-    // What is asked of a shell is computed exactly, and then rounded.
-    let size = if matches!(map, StoredMap::Shell(_)) { EXACT_CHUNK } else { CHUNK };
-    let answers = in_chunks(session, &points.rows, size, |rows| images::floating(map, direction_of(options), rows))?;
+    let answers = in_chunks(session, &points.rows, CHUNK, |rows| images::floating(map, direction_of(options), rows))?;
     let outside = count_outside(options, &answers)?;
     let max_radius = answers.iter().flatten().map(|a| a.radius).fold(0.0, f64::max);
     let rows = answers.into_iter().map(|a| a.map_or([f64::NAN; 3], |a| a.point)).collect();

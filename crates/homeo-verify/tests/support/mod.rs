@@ -25,6 +25,8 @@ pub struct Map {
     /// Bottom, middle and top points of the columns of a shell.
     pub levels: [Vec<Vec<f64>>; 3],
     pub prisms: Vec<Vec<u32>>,
+    /// Another section of a shell: points and triangles.
+    pub section: Option<(Vec<Vec<f64>>, Vec<Vec<u32>>)>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +57,7 @@ impl Map {
             target_positions: vec![],
             levels: Default::default(),
             prisms: vec![],
+            section: None,
         }
     }
 
@@ -64,7 +67,7 @@ impl Map {
 
     /// Vertices per cell.
     pub fn size(&self) -> usize {
-        if ["square", "disk", "shell"].contains(&self.text("target").as_str()) { 3 } else { 4 }
+        if ["square", "disk", "shell", "section"].contains(&self.text("target").as_str()) { 3 } else { 4 }
     }
 
     /// Cells of the refined complex.

@@ -300,6 +300,15 @@ struct Exact {
 
 /// Whether a shell is valid, and has the counts and the hash that its manifest states.
 pub fn is_valid(map: &Map) -> bool {
+    let as_source = |(positions, cells): &(Vec<Vec<f64>>, Vec<Vec<u32>>)| {
+        let mut other = Map { positions: positions.clone(), source_cells: cells.clone(), section: None, ..map.clone() };
+        other.sign();
+        other
+    };
+    is_valid_for_source(map) && map.section.as_ref().is_none_or(|section| is_valid_for_source(&as_source(section)))
+}
+
+fn is_valid_for_source(map: &Map) -> bool {
     let source = &map.manifest["source"];
     let counts = [map.positions.len(), map.source_cells.len()].map(|n| Some(n as u64));
     let is_counted = [source["vertices"].as_u64(), source["cells"].as_u64()] == counts

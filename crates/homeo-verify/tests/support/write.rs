@@ -102,6 +102,10 @@ pub fn entries(map: &Map) -> Vec<(String, Vec<u8>)> {
             add(name, "<f8", level.len(), 3, little_endian!(level));
         }
         add("prisms", "<u4", map.prisms.len(), 3, little_endian!(map.prisms));
+        if let Some((positions, cells)) = &map.section {
+            add("section_positions", "<f8", positions.len(), 3, little_endian!(positions));
+            add("section_cells", "<u4", cells.len(), 3, little_endian!(cells));
+        }
         return entries;
     }
     if map.text("kind") == "piecewise-linear" {

@@ -62,11 +62,18 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
                 _ => FoliationMap::Volume(file.foliation::<4>(target, &manifest)?),
             }))
         }
-        "shell" if text("target") == "shell" => {
-            is_of_dimension("shell", 2)?;
-            Ok(StoredMap::Shell(file.shell()?))
+        "shell" => {
+            is_of_dimension(&text("target"), 2)?;
+            let shell = file.shell()?;
+            match text("target").as_str() {
+                "shell" => Ok(StoredMap::Shell(shell)),
+                "section" => {
+                    let section = file.mesh::<3>(["section_positions", "section_cells"])?;
+                    Ok(StoredMap::Shell(shell.with_section(section)))
+                }
+                _ => Err(MapFileError::Manifest("a shell has the target `shell` or `section`".to_owned())),
+            }
         }
-        "shell" => Err(MapFileError::Manifest("a shell has the target `shell`".to_owned())),
         other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
     }
 }
@@ -141,11 +148,15 @@ impl<'b> File<'b> {
     }
 
     fn source<const K: usize>(&mut self) -> Result<SourceMesh<K>, MapFileError> {
-        let positions = self.points("source_positions")?;
-        let complex = self.cells::<K>("source_cells", positions.len())?;
+        self.mesh(["source_positions", "source_cells"])
+    }
+
+    fn mesh<const K: usize>(&mut self, names: [&str; 2]) -> Result<SourceMesh<K>, MapFileError> {
+        let positions = self.points(names[0])?;
+        let complex = self.cells::<K>(names[1], positions.len())?;
         let flat = complex.cells().iter().position(|cell| is_flat(&cell.map(|v| positions[v.index()])));
         match flat {
-            Some(cell) => inconsistent(format!("source cell {cell} is flat")),
+            Some(cell) => inconsistent(format!("cell {cell} of {} is flat", names[1])),
             None => Ok(SourceMesh::new(positions, complex)),
         }
     }

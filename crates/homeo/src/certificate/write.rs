@@ -27,13 +27,17 @@ pub fn write_map(map: &FoliationMap, provenance: &Provenance, out: &mut (impl Wr
 /// When `out` cannot be written.
 pub fn write_shell(shell: &Shell, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
     let (source, parts) = (shell.source(), shell.parts());
-    let claim = Claim { kind: "shell", target: "shell", centre: None, length_unit: 1.0 };
+    let target = if shell.section().is_some() { "section" } else { "shell" };
+    let claim = Claim { kind: "shell", target, centre: None, length_unit: 1.0 };
     let mut archive = Archive::begin(source, &claim, provenance, out)?;
     for (name, points) in [("bottom", &parts.bottom), ("middle", &parts.middle), ("top", &parts.top)] {
         let flat = points.as_flattened().iter().copied();
         archive.array(&format!("shell_{name}"), &[points.len(), 3], flat)?;
     }
     archive.array("prisms", &[parts.prisms.len(), 3], parts.prisms.as_flattened().iter().copied())?;
+    if let Some(section) = shell.section() {
+        archive.mesh(["section_positions", "section_cells"], section)?;
+    }
     archive.finish()
 }
 
@@ -80,10 +84,14 @@ impl<'w, W: Write + Seek> Archive<'w, W> {
         let mut archive = Self { zip: ZipWriter::new(out) };
         let manifest = serde_json::to_vec_pretty(&manifest(source, claim, provenance)).map_err(io::Error::other)?;
         archive.add("manifest.json", &manifest)?;
-        let (positions, cells) = (source.positions(), source.complex().cells());
-        archive.array("source_positions", &[positions.len(), 3], positions.as_flattened().iter().copied())?;
-        archive.array("source_cells", &[cells.len(), K], numbers(cells).into_iter())?;
+        archive.mesh(["source_positions", "source_cells"], source)?;
         Ok(archive)
+    }
+
+    fn mesh<const K: usize>(&mut self, names: [&str; 2], mesh: &SourceMesh<K>) -> io::Result<()> {
+        let (positions, cells) = (mesh.positions(), mesh.complex().cells());
+        self.array(names[0], &[positions.len(), 3], positions.as_flattened().iter().copied())?;
+        self.array(names[1], &[cells.len(), K], numbers(cells).into_iter())
     }
 
     fn finish(self) -> io::Result<()> {
