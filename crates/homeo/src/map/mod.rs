@@ -21,6 +21,7 @@ pub use foliation::{Centre, DEFAULT_ACCURACY, Foliation, FoliationParts};
 pub(crate) use nearest::is_flat;
 pub use sample::{LeafPolyline, distortions};
 pub use section::Section;
+pub(crate) use shell::ShellSurface;
 pub use shell::{Shell, ShellEvaluationError, ShellParts, ShellPoint, SurfacePoint};
 pub use target::{BALL_CORNERS, Target, UnknownTarget};
 

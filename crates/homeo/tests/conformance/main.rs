@@ -7,6 +7,7 @@ mod controls;
 mod hostile;
 mod laws;
 mod order;
+mod overlays;
 mod points;
 mod random;
 mod refinement;

@@ -8,7 +8,7 @@ use homeo_core::predicate::Sign;
 use homeo_core::spatial::Aabb;
 
 use super::space::{Undecided, combination, crossing, point_of, sum, weights_in, zero};
-use super::{Shell, ShellEvaluationError, ShellPoint, Surface, SurfacePoint};
+use super::{Shell, ShellEvaluationError, ShellPoint, ShellSurface, SurfacePoint};
 
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq)]
@@ -149,7 +149,7 @@ impl Shell {
     }
 
     /// The point of a section on a pillar line.
-    pub(super) fn meet<T: Scalar>(&self, surface: &Surface, line: &Fibre<T>) -> Result<SurfacePoint<T>, Stop> {
+    pub(super) fn meet<T: Scalar>(&self, surface: &ShellSurface, line: &Fibre<T>) -> Result<SurfacePoint<T>, Stop> {
         let near: Vec<[f64; 3]> = line.iter().map(|p| p.each_ref().map(T::near)).collect();
         let candidates = surface.near(&near);
         if let [pinched] = line.as_slice() {
@@ -206,8 +206,13 @@ impl Shell {
         ]
     }
 
+    /// On which column of its prism each corner of the tetrahedra lies.
+    pub(crate) fn columns_of_tetrahedra(&self, prism: u32) -> [[usize; 4]; 3] {
+        self.tetrahedra(prism).map(|cell| cell.map(|(column, _)| column))
+    }
+
     /// The tetrahedra of a slab, as points.
-    pub(super) fn tetrahedra_of_slab(&self, slab: usize) -> [[[f64; 3]; 4]; 3] {
+    pub(crate) fn tetrahedra_of_slab(&self, slab: usize) -> [[[f64; 3]; 4]; 3] {
         let columns = self.parts.prisms[slab / 2];
         let point = |(k, is_high): Corner| self.level(columns[k], slab % 2 + usize::from(is_high));
         self.tetrahedra((slab / 2) as u32).map(|cell| cell.map(point))

@@ -9,7 +9,7 @@ use homeo_core::predicate::{Sign, orient3d};
 use homeo_core::spatial::{Aabb, Tree};
 
 use self::lines::Stop;
-use self::surface::Surface;
+pub(crate) use self::surface::ShellSurface;
 use super::Enclosed;
 use crate::input::SourceMesh;
 
@@ -79,8 +79,8 @@ pub enum ShellEvaluationError {
 /// Images in floating point are enclosures; where rounding leaves a branch open, they are computed exactly and rounded.
 #[derive(Debug)]
 pub struct Shell {
-    source: Surface,
-    section: Option<Surface>,
+    pub(crate) source: ShellSurface,
+    pub(crate) section: Option<ShellSurface>,
     parts: ShellParts,
     /// Over the slabs: `2 * prism` is the lower one, `2 * prism + 1` the upper one.
     slabs: Tree,
@@ -106,13 +106,19 @@ impl Shell {
         let slabs: Vec<Aabb> = (0..2 * parts.prisms.len()).map(slab).collect();
         let hull = Aabb::of(&parts.middle);
         let size = (0..3).map(|axis| hull.high[axis] - hull.low[axis]).fold(0.0, f64::max);
-        Self { slabs: Tree::new(&slabs), source: Surface::new(source), section: None, accuracy: ACCURACY * size, parts }
+        Self {
+            slabs: Tree::new(&slabs),
+            source: ShellSurface::new(source),
+            section: None,
+            accuracy: ACCURACY * size,
+            parts,
+        }
     }
 
     /// The same shell, with another section as the image of the source.
     #[must_use]
     pub fn with_section(self, section: SourceMesh<3>) -> Self {
-        Self { section: Some(Surface::new(section)), ..self }
+        Self { section: Some(ShellSurface::new(section)), ..self }
     }
 
     /// The surface round which the shell lies.
@@ -279,7 +285,7 @@ impl Shell {
 
     fn meet_exactly(
         &self,
-        surface: &Surface,
+        surface: &ShellSurface,
         at: &ShellPoint<Rational>,
     ) -> Result<SurfacePoint<Rational>, ShellEvaluationError> {
         self.check_point(at)?;

@@ -10,12 +10,12 @@ use crate::input::SourceMesh;
 type Point = [f64; 3];
 
 #[derive(Debug)]
-pub(super) struct Surface {
+pub(crate) struct ShellSurface {
     pub mesh: SourceMesh<3>,
     tree: Tree,
 }
 
-impl Surface {
+impl ShellSurface {
     pub fn new(mesh: SourceMesh<3>) -> Self {
         let corner = |v: homeo_core::mesh::VertexId| mesh.positions()[v.index()];
         let boxes: Vec<Aabb> = mesh.complex().cells().iter().map(|cell| Aabb::of(&cell.map(corner))).collect();

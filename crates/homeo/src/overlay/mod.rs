@@ -1,0 +1,121 @@
+//! The common refinement of two surfaces that a shell maps onto one another.
+//!
+//! Theorem:     the projections of both sections onto the middle surface are homeomorphisms, affine where a triangle lies
+//!              in one tetrahedron of the shell. So the convex pieces `triangle x tetrahedron` of either section tile the
+//!              middle surface, and so do the intersections of a piece of the one with a piece of the other, the *cells*.
+//!              On a cell the map from source to section is affine.
+//! Source:      Jiang, Schneider, Zorin, Panozzo 2020 (doi 10.1145/3414685.3417769), section 4 (transfer); the exact
+//!              subdivision is ours.
+//! Arithmetic:  rationals; signs by floating-point filters first. Nothing is rounded.
+//! Cost:        about linear in the cells; each takes a few dozen rational operations. One prism at a time is held.
+//! Fails when:  the shell's certificate does not hold: then pieces overlap or leave gaps, and shares do not add up to 1.
+//! See:         `docs/theory/shells.md`.
+
+mod pieces;
+mod polygon;
+mod shares;
+
+use homeo_core::number::Rational;
+use rayon::prelude::*;
+
+use crate::map::Shell;
+use crate::progress::Progress;
+
+use pieces::{Piece, pieces_in};
+
+pub use shares::{Share, shares};
+
+/// A corner of a cell: the same point on the middle surface, on the source and on the section.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellCorner {
+    /// Weights of the prism's columns.
+    pub on_middle: [Rational; 3],
+    /// Weights in the source's triangle.
+    pub on_source: [Rational; 3],
+    /// Weights in the section's triangle.
+    pub on_section: [Rational; 3],
+}
+
+/// A convex polygon on which the map from the source to the section is affine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    /// The prism.
+    pub prism: u32,
+    /// The triangle of the source.
+    pub source: u32,
+    /// The triangle of the section; the prism where the shell has no other section.
+    pub section: u32,
+    /// At least three corners, counter-clockwise; no three of them need turn strictly.
+    pub corners: Vec<CellCorner>,
+}
+
+impl Cell {
+    /// Its area as a part of that of its triangle of the source.
+    pub fn share_of_source(&self) -> Rational {
+        polygon::doubled_area(self.corners.iter().map(|corner| [&corner.on_source[1], &corner.on_source[2]]))
+    }
+
+    /// Its area as a part of that of its triangle of the section.
+    pub fn share_of_section(&self) -> Rational {
+        polygon::doubled_area(self.corners.iter().map(|corner| [&corner.on_section[1], &corner.on_section[2]]))
+    }
+}
+
+/// Prisms that are worked on before their cells are handed over.
+const CHUNK: u32 = 64;
+
+/// Hands over the cells of the common refinement, one prism after the other, in an order that does not depend on the number
+/// of threads. Ends early when `progress` says so; the answer tells whether all were handed over.
+///
+/// ```
+/// # use homeo::{construct::shell::{ShellParams, build}, input::SourceMesh, overlay::for_each_cell, progress::Silent};
+/// # use homeo_core::mesh::SimplicialComplex;
+/// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+/// let surface = SourceMesh::new(corners, SimplicialComplex::from_indices(4, &triangles).unwrap());
+/// let (shell, _) = build(&surface, &ShellParams { rounds: 0, ..ShellParams::default() }, &Silent).unwrap();
+/// let mut count = 0;
+/// assert!(for_each_cell(&shell, &Silent, |cell| {
+///     assert_eq!(cell.source, cell.section, "the middle of the first shell is the source");
+///     count += 1;
+/// }));
+/// assert_eq!(count, 4);
+/// ```
+pub fn for_each_cell(shell: &Shell, progress: &(dyn Progress + Sync), mut visit: impl FnMut(Cell)) -> bool {
+    let count = shell.parts().prisms.len() as u32;
+    for begin in (0..count).step_by(CHUNK as usize) {
+        if progress.is_cancelled() {
+            return false;
+        }
+        let prisms: Vec<u32> = (begin..count.min(begin + CHUNK)).collect();
+        let cells: Vec<Vec<Cell>> = prisms.into_par_iter().map(|prism| cells_of(shell, prism)).collect();
+        cells.into_iter().flatten().for_each(&mut visit);
+    }
+    true
+}
+
+/// The cells over one triangle of the middle surface.
+fn cells_of(shell: &Shell, prism: u32) -> Vec<Cell> {
+    let of_source = pieces_in(shell, &shell.source, prism);
+    let of_section = match &shell.section {
+        Some(section) => pieces_in(shell, section, prism),
+        None => vec![Piece::whole_prism(prism)],
+    };
+    let mut cells = Vec::new();
+    for piece in &of_source {
+        for other in of_section.iter().filter(|other| piece.hull.meets(&other.hull)) {
+            let corners = polygon::intersection(&piece.corners, &other.corners);
+            if corners.is_empty() {
+                continue;
+            }
+            let on_section = other.weights_at(corners.iter().map(|corner| &corner.place));
+            let joined = corners.into_iter().zip(on_section).map(|(corner, on_section)| CellCorner {
+                on_middle: corner.place.on_middle(),
+                on_source: corner.weights,
+                on_section,
+            });
+            cells.push(Cell { prism, source: piece.triangle, section: other.triangle, corners: joined.collect() });
+        }
+    }
+    cells
+}
