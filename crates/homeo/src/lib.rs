@@ -14,6 +14,7 @@ pub mod map;
 pub mod overlay;
 pub mod progress;
 pub mod refine;
+pub mod transfer;
 
 #[cfg(doctest)]
 mod _documentation;

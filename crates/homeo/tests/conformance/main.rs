@@ -14,6 +14,7 @@ mod refinement;
 mod refused;
 mod shapes;
 mod shells;
+mod transfers;
 
 use std::io::Cursor;
 
