@@ -1,6 +1,9 @@
 //! Builds the shell of a mesh, simplifies the mesh in it to 2 %, and remeshes it with three lengths of edges.
 //!
-//! Usage: `cargo run --release -p homeo --example section_table -- MESH [FEATURE_DEGREES]`
+//! Usage: `cargo run --release -p homeo --example section_table -- MESH [FEATURE_DEGREES] [FACTORS]`
+//!
+//! `FACTORS` are the lengths, relative to the mean length of edges, with commas between them: `0.5,1,2` unless said
+//! otherwise. Without features give 180 for their angle.
 //!
 //! Prints rows of a Markdown table: mesh, operation, triangles before and after, processor seconds (wall seconds where the
 //! system does not tell), whether the independent checker certifies the result as a section of the same shell, pairs of
@@ -74,7 +77,9 @@ fn run(arguments: &[String]) -> Result<bool, String> {
     let end = if info.end == SimplifyEnd::Reached { "simplify to 2 %" } else { "simplify to 2 %, none left" };
     row(end, &coarse, seconds);
     eprintln!("{info:?}");
-    for factor in [0.5, 1.0, 2.0] {
+    let factors = arguments.get(2).map_or("0.5,1,2", |text| text);
+    for factor in factors.split(',').filter(|text| !text.is_empty()) {
+        let factor: f64 = factor.parse().map_err(|error| format!("{factor}: {error}"))?;
         let begin = clock();
         let length = factor * mean_edge(&start.surface);
         let params = RemeshParams { feature_angle, ..RemeshParams::with_edge_length(length) };

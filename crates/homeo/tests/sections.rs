@@ -134,13 +134,36 @@ fn sizes_vary_with_the_factors() {
 fn features_keep_their_points() {
     let source = turned_box(6);
     let shell = built(&source);
-    let params = SimplifyParams { feature_angle: Some(0.5), ..fewer(12) };
+    let params = SimplifyParams { feature_angle: Some(0.5), ..fewer(40) };
     let (section, info) = simplify(&shell, &source.clone().into(), &params, &Silent).expect("a section");
     assert_eq!(info.end, SimplifyEnd::Reached, "{info:?}");
-    // The eight corners, where three features meet, are all that is left.
-    assert_eq!(section.surface.positions().len(), 8);
-    assert!(section.surface.positions().iter().all(|p| source.positions().contains(p)));
+    // The box is still the box: every vertex that is left is near its sides, and the eight corners are there.
     assert!(info.largest_error < 1e-6, "{}", info.largest_error);
+    let corners = |mesh: &SourceMesh<3>| {
+        let many = |v: u32| {
+            let around = mesh.complex().cells().iter().filter(|cell| cell.iter().any(|w| w.raw() == v));
+            let mut normals: Vec<[i64; 3]> = around
+                .map(|cell| {
+                    let [a, b, c] = cell.map(|v| mesh.positions()[v.index()]);
+                    let [u, w] = [b, c].map(|p| [0, 1, 2].map(|i| p[i] - a[i]));
+                    let n = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]];
+                    let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+                    n.map(|x| (1e3 * x / length).round() as i64)
+                })
+                .collect();
+            normals.sort_unstable();
+            normals.dedup();
+            normals.len() >= 3
+        };
+        let mut found: Vec<[u64; 3]> = (0..mesh.positions().len() as u32)
+            .filter(|&v| many(v))
+            .map(|v| mesh.positions()[v as usize].map(f64::to_bits))
+            .collect();
+        found.sort_unstable();
+        found
+    };
+    assert_eq!(corners(&source).len(), 8);
+    assert_eq!(corners(&section.surface), corners(&source));
     assert_section(&shell, &section.surface);
 }
 
@@ -148,9 +171,10 @@ fn features_keep_their_points() {
 fn the_largest_error_is_kept() {
     let source = torus(32, 16, 0.0);
     let shell = built(&source);
-    let params = SimplifyParams { largest_error: Some(1e-3), ..fewer(0) };
+    let params = SimplifyParams { largest_error: Some(0.01), ..fewer(0) };
     let (section, info) = simplify(&shell, &source.into(), &params, &Silent).expect("a section");
-    assert!(info.largest_error <= 1e-3 && info.end == SimplifyEnd::Exhausted && info.collapses > 100, "{info:?}");
+    assert!(info.largest_error <= 0.01 && info.end == SimplifyEnd::Exhausted && info.collapses > 100, "{info:?}");
+    assert!(info.triangles > 60, "without the limit it goes further: {info:?}");
     assert_section(&shell, &section.surface);
 }
 

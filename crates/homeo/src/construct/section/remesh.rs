@@ -24,7 +24,7 @@ const SHORT: f64 = 4.0 / 5.0;
 const FLAT_COSINE: f64 = 0.85;
 
 /// Steps of smoothing that are shorter, relative to the wanted length, are left out.
-const SMALL_STEP: f64 = 1e-2;
+const SMALL_STEP: f64 = 3e-2;
 
 /// What triangles are wanted.
 #[derive(Clone, Debug, PartialEq)]

@@ -19,7 +19,7 @@ type Point = [f64; 3];
 const LENGTH_WEIGHT: f64 = 1e-6;
 
 /// When simplification is to end, and what is to be kept.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SimplifyParams {
     /// Stop when no more than this many triangles are left; 0 for as few as possible.
     pub triangles: usize,
@@ -28,12 +28,6 @@ pub struct SimplifyParams {
     pub largest_error: Option<f64>,
     /// Edges are kept as chains if the normals of their triangles differ by more than this angle, in radians.
     pub feature_angle: Option<f64>,
-}
-
-impl Default for SimplifyParams {
-    fn default() -> Self {
-        Self { triangles: 0, largest_error: None, feature_angle: None }
-    }
 }
 
 /// Why a simplification ended.
