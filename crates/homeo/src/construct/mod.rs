@@ -1,4 +1,5 @@
 //! Constructions of maps, one folder each.
 
 pub mod foliation;
+pub mod section;
 pub mod shell;

@@ -120,11 +120,11 @@ fn unit(v: Point) -> Option<Point> {
     Some(v.map(|x| x / length))
 }
 
-pub(super) fn minus(a: Point, b: Point) -> Point {
+pub(in crate::construct) fn minus(a: Point, b: Point) -> Point {
     [0, 1, 2].map(|axis| a[axis] - b[axis])
 }
 
-pub(super) fn dot(a: Point, b: Point) -> f64 {
+pub(in crate::construct) fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

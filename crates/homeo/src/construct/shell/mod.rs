@@ -10,8 +10,9 @@
 //! Fails when:  the surface crosses or touches itself, or two singular vertices are neighbours -> [`ShellError`].
 //! See:         `docs/theory/shells.md`.
 
-mod directions;
-mod layer;
+pub(in crate::construct) mod directions;
+pub(in crate::construct) mod layer;
+pub(in crate::construct) mod prism;
 mod simplify;
 
 use crate::input::SourceMesh;
@@ -19,7 +20,8 @@ use crate::map::Shell;
 use crate::progress::Progress;
 
 use directions::extrusion_directions;
-use layer::{Column, Failure, Layer};
+use layer::Layer;
+use prism::{Column, Failure};
 
 /// What shell is wanted.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,178 @@
+//! Builds the shell of a mesh, simplifies the mesh in it to 2 %, and remeshes it with three lengths of edges.
+//!
+//! Usage: `cargo run --release -p homeo --example section_table -- MESH [FEATURE_DEGREES] [FACTORS]`
+//!
+//! `FACTORS` are the lengths, relative to the mean length of edges, with commas between them: `0.5,1,2` unless said
+//! otherwise. Without features give 180 for their angle.
+//!
+//! Prints rows of a Markdown table: mesh, operation, triangles before and after, processor seconds (wall seconds where the
+//! system does not tell), whether the independent checker certifies the result as a section of the same shell, pairs of
+//! triangles of the result that meet in space, and, if the file has texture coordinates at corners, the triangles turned
+//! over and the overlapping pairs in the texture plane, before and after. Exit code 1 if a result is not certified.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program")]
+
+use std::io::Cursor;
+use std::ops::ControlFlow;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use homeo::certificate::{Provenance, write_shell};
+use homeo::construct::section::{
+    RemeshParams, SimplifyEnd, SimplifyParams, Texture, TexturedSurface, remesh, simplify,
+};
+use homeo::construct::shell::{ShellParams, build};
+use homeo::input::SourceMesh;
+use homeo::map::Shell;
+use homeo::progress::Silent;
+use homeo_core::io::{Element, MeshFile, Values};
+use homeo_core::mesh::SimplicialComplex;
+use homeo_core::predicate::{Sign, orient2d};
+use homeo_core::spatial::{Aabb, Tree};
+use homeo_core::topology::self_intersections;
+use homeo_verify::{Verdict, verify_bytes};
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match run(&arguments) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(message) => {
+            eprintln!("{}: {message}", arguments.first().map_or("usage: section_table MESH", |path| path));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &[String]) -> Result<bool, String> {
+    let path = arguments.first().ok_or("no mesh")?;
+    let degrees = arguments.get(1).map(|text| text.parse::<f64>().map_err(|error| format!("{text}: {error}")));
+    let feature_angle = degrees.transpose()?.map(f64::to_radians);
+    let file = homeo_core::io::read_mesh(path.as_ref()).map_err(|error| error.to_string())?;
+    let name = std::path::Path::new(path).file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let start = textured(file)?;
+    let count = start.surface.complex().cell_count();
+    let begin = clock();
+    let (shell, _) = build(&start.surface, &ShellParams::default(), &Silent).map_err(|error| error.to_string())?;
+    let spent = seconds_since(&begin);
+    println!("| {name} | shell | {count} | {} prisms | {spent:.1} | | | |", shell.parts().prisms.len());
+    let mut is_all_certified = true;
+    let mut row = |operation: &str, result: &TexturedSurface, seconds: f64| {
+        let outcome = certified(&shell, &result.surface);
+        is_all_certified &= outcome == "yes";
+        let crossing = self_intersections(result.surface.positions(), result.surface.complex()).pairs.len();
+        let texture = match (&start.texture, &result.texture) {
+            (Some(before), Some(after)) => {
+                let ([f, o], [g, p]) = (turned_and_overlapping(before), turned_and_overlapping(after));
+                format!("{f} to {g}, {o} to {p}")
+            }
+            _ => "-".to_owned(),
+        };
+        let after = result.surface.complex().cell_count();
+        println!("| {name} | {operation} | {count} | {after} | {seconds:.1} | {outcome} | {crossing} | {texture} |");
+    };
+    let begin = clock();
+    let params = SimplifyParams { triangles: count / 50, feature_angle, largest_error: None };
+    let (coarse, info) = simplify(&shell, &start, &params, &Silent).map_err(|error| error.to_string())?;
+    let seconds = seconds_since(&begin);
+    let end = if info.end == SimplifyEnd::Reached { "simplify to 2 %" } else { "simplify to 2 %, none left" };
+    row(end, &coarse, seconds);
+    eprintln!("{info:?}");
+    let factors = arguments.get(2).map_or("0.5,1,2", |text| text);
+    for factor in factors.split(',').filter(|text| !text.is_empty()) {
+        let factor: f64 = factor.parse().map_err(|error| format!("{factor}: {error}"))?;
+        let begin = clock();
+        let length = factor * mean_edge(&start.surface);
+        let params = RemeshParams { feature_angle, ..RemeshParams::with_edge_length(length) };
+        let (result, info) = remesh(&shell, &start, &params, &Silent).map_err(|error| error.to_string())?;
+        row(&format!("remesh, {factor} x mean edge"), &result, seconds_since(&begin));
+        eprintln!("{info:?}");
+    }
+    Ok(is_all_certified)
+}
+
+/// The triangles of a file, with the texture coordinates at their corners.
+fn textured(file: MeshFile) -> Result<TexturedSurface, String> {
+    let polygons = file.polygons.iter().map(|corners| corners.try_into().map_err(|_| "a polygon is no triangle"));
+    let triangles = polygons.collect::<Result<Vec<[u32; 3]>, _>>()?;
+    let texture = file.attributes.iter().find(|a| a.name == "texture" && a.element == Element::Corner);
+    let texture = texture.and_then(|attribute| match &attribute.values {
+        Values::F64(values) if attribute.components >= 2 && values.iter().all(|x| x.is_finite()) => {
+            let coordinates = values.chunks(attribute.components).map(|row| [row[0], row[1]]).collect();
+            let corners = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+            Some(Texture { coordinates, corners })
+        }
+        _ => None,
+    });
+    let complex =
+        SimplicialComplex::from_indices(file.positions.len(), &triangles).map_err(|error| error.to_string())?;
+    Ok(TexturedSurface { surface: SourceMesh::new(file.positions, complex), texture })
+}
+
+fn certified(shell: &Shell, section: &SourceMesh<3>) -> &'static str {
+    let mut bytes = Cursor::new(Vec::new());
+    let whole = Shell::from_parts(section.clone(), shell.parts().clone());
+    if write_shell(&whole, &Provenance::default(), &mut bytes).is_err() {
+        return "unwritten";
+    }
+    match verify_bytes(bytes.get_ref()) {
+        Ok(Verdict::Certified(_)) => "yes",
+        Ok(Verdict::Refuted(_)) => "NO",
+        Ok(Verdict::Undecided(_)) => "undecided",
+        Err(_) => "unreadable",
+    }
+}
+
+/// Triangles that are turned over or flat in the texture plane, taking the more frequent orientation for the right one,
+/// and pairs that have inner points in common, exactly.
+fn turned_and_overlapping(texture: &Texture) -> [usize; 2] {
+    let triangles: Vec<[[f64; 2]; 3]> =
+        texture.corners.iter().map(|corners| corners.map(|k| texture.coordinates[k as usize])).collect();
+    let signs: Vec<Sign> = triangles.iter().map(|&[a, b, c]| orient2d(a, b, c)).collect();
+    let count = |sign: Sign| signs.iter().filter(|s| **s == sign).count();
+    let turned = signs.len() - count(Sign::Positive).max(count(Sign::Negative));
+    let parts = |k: usize, other: [[f64; 2]; 3]| {
+        let [a, b, c] = triangles[k];
+        let beyond = |p, q| other.iter().all(|&x| orient2d(p, q, x) != signs[k]);
+        beyond(a, b) || beyond(b, c) || beyond(c, a)
+    };
+    let boxes: Vec<Aabb> = triangles.iter().map(|t| Aabb::of(&t.map(|[x, y]| [x, y, 0.0]))).collect();
+    let mut overlapping = 0;
+    Tree::new(&boxes).overlapping_pairs(|i, j| {
+        let are_solid = signs[i] != Sign::Zero && signs[j] != Sign::Zero;
+        overlapping += usize::from(are_solid && !parts(i, triangles[j]) && !parts(j, triangles[i]));
+        ControlFlow::Continue(())
+    });
+    [turned, overlapping]
+}
+
+fn mean_edge(mesh: &SourceMesh<3>) -> f64 {
+    let mut sum = 0.0;
+    for cell in mesh.complex().cells() {
+        for k in 0..3 {
+            let [p, q] = [cell[k], cell[(k + 1) % 3]].map(|v| mesh.positions()[v.index()]);
+            sum += (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>().sqrt();
+        }
+    }
+    sum / (3 * mesh.complex().cell_count()).max(1) as f64
+}
+
+/// Wall clock, and seconds that processors have spent on this process (Linux).
+fn clock() -> (Instant, Option<f64>) {
+    (Instant::now(), processor_seconds())
+}
+
+fn seconds_since((wall, processor): &(Instant, Option<f64>)) -> f64 {
+    match (processor, processor_seconds()) {
+        (Some(before), Some(after)) => after - before,
+        _ => wall.elapsed().as_secs_f64(),
+    }
+}
+
+fn processor_seconds() -> Option<f64> {
+    let tasks = std::fs::read_dir("/proc/self/task").ok()?.flatten();
+    let nanoseconds = tasks.filter_map(|task| {
+        let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse::<f64>().ok()
+    });
+    Some(nanoseconds.sum::<f64>() / 1e9)
+}

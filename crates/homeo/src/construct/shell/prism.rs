@@ -1,0 +1,168 @@
+//! One prism of a shell against one triangle: the exact checks that the construction of shells (prisms change, the
+//! surface stays) and that of sections (the surface changes, prisms stay) have in common.
+
+use homeo_core::predicate::{Sign, crossing_sign, orient3d, share_area, triangles_meet, triangles_meet_beyond_vertex};
+use homeo_core::spatial::Aabb;
+
+type Point = [f64; 3];
+
+/// Bottom, middle and top of a column.
+pub(in crate::construct) type Column = [Point; 3];
+
+/// Lower and upper slab, as the levels of their low and high points.
+pub(in crate::construct) const SLABS: [[usize; 2]; 2] = [[0, 1], [1, 2]];
+
+/// A hypothesis that fails, and in which slab: 0 for the lower one, 1 for the upper one.
+pub(in crate::construct) type FailureIn = (Failure, usize);
+
+/// Which of the theorem's hypotheses fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::construct) enum Failure {
+    /// L2: a tetrahedron is not positive.
+    Volume,
+    /// L3: the surface meets top or bottom.
+    Cap,
+    /// L4: a pillar crosses a triangle the wrong way.
+    Crossing,
+    /// L3: a wall over the boundary meets the surface off its edge.
+    Wall,
+}
+
+/// A prism with its points.
+pub(in crate::construct) struct Prism {
+    columns: [Column; 3],
+    pinched: [bool; 3],
+}
+
+/// Whether a column has no length.
+pub(in crate::construct) fn is_pinched([bottom, middle, top]: Column) -> bool {
+    bottom == middle && middle == top
+}
+
+impl Prism {
+    pub fn new(columns: [Column; 3]) -> Self {
+        Self { columns, pinched: columns.map(is_pinched) }
+    }
+
+    /// The box that holds the prism.
+    pub fn hull(&self) -> Aabb {
+        Aabb::of(self.columns.as_flattened())
+    }
+
+    /// L2.
+    pub fn check_volumes(&self) -> Result<(), FailureIn> {
+        let is_positive = |[a, b, c, d]: [Point; 4]| orient3d(a, b, c, d) == Sign::Positive;
+        let pinched = self.pinched.iter().filter(|pinched| **pinched).count();
+        let holds = |slab: [usize; 2]| pinched <= 1 && self.tetrahedra(slab).all(is_positive);
+        SLABS.iter().position(|&slab| !holds(slab)).map_or(Ok(()), |slab| Err((Failure::Volume, slab)))
+    }
+
+    /// The triangle at the far side of a slab: the bottom of the lower one, the top of the upper one.
+    pub fn cap(&self, slab: usize) -> [Point; 3] {
+        self.columns.map(|column| column[2 * slab])
+    }
+
+    /// L3 for a pair: whether a triangle stays off the cap of a slab, but for a pinched point that is a corner of both.
+    pub fn is_off_cap(&self, slab: usize, triangle: [Point; 3]) -> bool {
+        let cap = self.cap(slab);
+        let pinched = self.pinched.iter().position(|pinched| *pinched);
+        let apex = pinched.map(|k| cap[k]);
+        match (pinched, triangle.iter().position(|p| Some(*p) == apex)) {
+            (Some(k), Some(l)) => !triangles_meet_beyond_vertex(
+                cap[k],
+                [cap[(k + 1) % 3], cap[(k + 2) % 3]],
+                [triangle[(l + 1) % 3], triangle[(l + 2) % 3]],
+            ),
+            _ => !triangles_meet(cap, triangle),
+        }
+    }
+
+    /// The wall triangles of L3 over the side from column `k` to the next, counter-clockwise from outside, with their
+    /// slabs; those with two equal points are left out.
+    pub fn boundary_walls(&self, k: usize) -> Vec<(usize, [Point; 3])> {
+        let walls =
+            SLABS.into_iter().enumerate().flat_map(|(number, slab)| self.wall(slab, k).map(|wall| (number, wall)));
+        walls.filter(|(_, wall)| wall[0] != wall[1] && wall[1] != wall[2] && wall[2] != wall[0]).collect()
+    }
+
+    /// The triangles with three corners of the side of a slab from column `k` to the next, counter-clockwise from outside.
+    fn wall(&self, [low, high]: [usize; 2], k: usize) -> [[Point; 3]; 4] {
+        let (a, b) = (self.columns[k], self.columns[(k + 1) % 3]);
+        [[a[low], b[low], b[high]], [a[low], b[low], a[high]], [a[low], b[high], a[high]], [b[low], b[high], a[high]]]
+    }
+
+    /// All tetrahedra of a slab in any order of the columns: a pillar and a point of each other column.
+    fn tetrahedra(&self, [low, high]: [usize; 2]) -> impl Iterator<Item = [Point; 4]> + '_ {
+        (0..3).filter(|&i| !self.pinched[i]).flat_map(move |i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let [pillar, second, third] = [i, j, k].map(|column| self.columns[column]);
+            // A pinched column has one point.
+            let levels = move |column: usize| [low, high].into_iter().take(2 - usize::from(self.pinched[column]));
+            levels(j).flat_map(move |x| levels(k).map(move |y| [pillar[low], pillar[high], second[x], third[y]]))
+        })
+    }
+
+    /// Whether a triangle and one of the tetrahedra of a slab have an area in common.
+    pub fn shares_area(&self, slab: usize, triangle: [Point; 3]) -> bool {
+        self.tetrahedra(SLABS[slab]).any(|cell| share_area(cell, triangle))
+    }
+
+    /// Whether all pillars of a slab cross a triangle in the positive sense: with this, L4 holds for the pair.
+    pub fn is_crossed(&self, slab: usize, triangle: [Point; 3]) -> bool {
+        let [low, high] = SLABS[slab];
+        let crosses = |column: &Column| crossing_sign(triangle, [column[low], column[high]]) == Sign::Positive;
+        (0..3).filter(|&i| !self.pinched[i]).all(|i| crosses(&self.columns[i]))
+    }
+
+    /// Planes through sides of a slab with all of it on their negative side.
+    pub fn outer_walls(&self, slab: usize) -> Vec<[Point; 3]> {
+        let slab = SLABS[slab];
+        let points: Vec<Point> = self.columns.iter().flat_map(|column| slab.map(|level| column[level])).collect();
+        let is_outer = |wall: &[Point; 3]| {
+            points.iter().all(|&p| side(*wall, p) != Sign::Positive)
+                && points.iter().any(|&p| side(*wall, p) == Sign::Negative)
+        };
+        (0..3).flat_map(|k| self.wall(slab, k)).filter(is_outer).collect()
+    }
+}
+
+/// L3 for a wall triangle over a boundary edge, counter-clockwise from outside, and a triangle: they meet in common
+/// corners and the common edge only, and the triangle lies inside at that edge.
+pub(in crate::construct) fn is_inside_wall(wall: [Point; 3], triangle: [Point; 3]) -> bool {
+    let common: Vec<[usize; 2]> =
+        (0..3).flat_map(|k| (0..3).map(move |l| [k, l])).filter(|&[k, l]| wall[k] == triangle[l]).collect();
+    match common[..] {
+        [] => !triangles_meet(wall, triangle),
+        [[k, l]] => !triangles_meet_beyond_vertex(
+            wall[k],
+            [wall[(k + 1) % 3], wall[(k + 2) % 3]],
+            [triangle[(l + 1) % 3], triangle[(l + 2) % 3]],
+        ),
+        [[_, l], [_, m]] => side(wall, triangle[3 - l - m]) == Sign::Negative,
+        _ => false,
+    }
+}
+
+/// Whether a triangle lies on the closed positive side of a plane, and not all in it.
+pub(in crate::construct) fn is_outside(plane: [Point; 3], triangle: [Point; 3]) -> bool {
+    let mut is_off = false;
+    for p in triangle {
+        match side(plane, p) {
+            Sign::Negative => return false,
+            Sign::Zero => {}
+            Sign::Positive => is_off = true,
+        }
+    }
+    is_off
+}
+
+/// On which side of a plane a point lies. That its own three points lie in it is seen at once: the predicate is slowest
+/// for zero.
+fn side(plane: [Point; 3], point: Point) -> Sign {
+    if plane.contains(&point) { Sign::Zero } else { orient3d(plane[0], plane[1], plane[2], point) }
+}
+
+/// The sides of a triangle, as pairs of corners in its direction.
+pub(in crate::construct) fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
