@@ -59,6 +59,12 @@ pub enum Verb {
     Map(MapArgs),
     /// Make a prismatic shell round a surface, with its one-to-one projection
     Shell(ShellArgs),
+    /// A surface with fewer triangles, with the one-to-one map onto it and everything that the file says
+    Simplify(SimplifyArgs),
+    /// A surface with triangles of about equal size, likewise
+    Remesh(RemeshArgs),
+    /// Move attributes from one surface in a shell to another
+    Transfer(TransferArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
     /// Check the certificate of a map, independently of how it was made
@@ -74,6 +80,9 @@ impl Verb {
             Self::Info(_) => "info",
             Self::Map(_) => "map",
             Self::Shell(_) => "shell",
+            Self::Simplify(_) => "simplify",
+            Self::Remesh(_) => "remesh",
+            Self::Transfer(_) => "transfer",
             Self::Eval(_) => "eval",
             Self::Verify(_) => "verify",
             Self::Report(_) => "report",
@@ -180,6 +189,159 @@ pub struct ShellArgs {
     pub orient: bool,
 }
 
+/// What `simplify` and `remesh` have in common.
+#[derive(Debug, Args)]
+pub struct InsideArgs {
+    /// A surface, closed or open, that does not cross or touch itself
+    #[arg(value_name = "MESH")]
+    pub input: PathBuf,
+    /// The surface to write (.obj, .ply, .off, .stl, .vtu, .vtk), with all attributes of MESH that the format can hold
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Also write the map from MESH onto OUT, with its certificate
+    #[arg(long, value_name = "MAP.homeo")]
+    pub map: Option<PathBuf>,
+    /// How far the surface may move: largest distance of the shell's bottom and top from its middle, relative to the longest
+    /// side of the bounding box
+    #[arg(long, value_name = "T", default_value_t = 0.1, value_parser = positive)]
+    pub thickness: f64,
+    /// Keep edges as chains where the normals of their triangles differ by more than A degrees
+    #[arg(long, value_name = "A", value_parser = degrees)]
+    pub features: Option<f64>,
+    /// An attribute of triangles that is a mass per area: its total is kept (may be repeated)
+    #[arg(long, value_name = "NAME")]
+    pub density: Vec<String>,
+    /// Write NAME_status beside each attribute: 0 copied, 1 interpolated, 2 largest share, 3 split by a seam, 4 missing
+    #[arg(long)]
+    pub status: bool,
+    /// Merge vertices at exactly the same point into the first of them (reported)
+    #[arg(long)]
+    pub weld: bool,
+    /// Cut polygons of more than three corners into triangles
+    #[arg(long)]
+    pub triangulate: bool,
+    /// Turn triangles so that neighbours are oriented alike (reported)
+    #[arg(long)]
+    pub orient: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo simplify testdata/meshes/torus.obj --to 10% -o small.obj --map small.homeo
+
+The result lies in a prismatic shell of MESH and is crossed by its pillars once: the map onto it is
+one-to-one and onto, which is proved before anything is written. It does not cross itself. Texture
+coordinates keep their seams, and no triangle of them is turned over that was not before.")]
+pub struct SimplifyArgs {
+    #[command(flatten)]
+    pub common: InsideArgs,
+    /// Stop at so many triangles: a number, or a share such as 2% [default: as few as --error allows]
+    #[arg(long, value_name = "N|P%", required_unless_present = "error")]
+    pub to: Option<Amount>,
+    /// Put no vertex farther than this from the planes of its triangles (root mean square, in units of MESH)
+    #[arg(long, value_name = "E", value_parser = positive)]
+    pub error: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo remesh testdata/meshes/torus.obj --edge 0.2 -o even.ply --map even.homeo
+
+As for `simplify`, the map onto the result is one-to-one and onto, proved before anything is written.")]
+pub struct RemeshArgs {
+    #[command(flatten)]
+    pub common: InsideArgs,
+    /// The wanted length of edges, in units of MESH [default: the mean length of its edges]
+    #[arg(long, value_name = "L", value_parser = positive)]
+    pub edge: Option<f64>,
+    /// How often edges are split, collapsed and flipped, and vertices moved
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
+    pub iterations: usize,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo simplify testdata/meshes/torus.obj --to 10% -o small.obj --map small.homeo
+  homeo transfer small.homeo --from testdata/meshes/torus.obj -o again.vtu
+  homeo transfer small.homeo --from small.obj --inverse -o back.vtu
+
+Every value that is written has a status: copied, interpolated, largest share of several labels,
+split (the value jumps inside the triangle), or missing; the answer counts them.")]
+pub struct TransferArgs {
+    /// A shell, as made by `shell`, `simplify` or `remesh`
+    #[arg(value_name = "MAP")]
+    pub map: PathBuf,
+    /// The mesh that has the attributes: the very one that the map was made of (with --inverse, the one it leads to)
+    #[arg(long, value_name = "MESH")]
+    pub from: PathBuf,
+    /// Another surface that lies in the shell [default: the one in the map]
+    #[arg(long, value_name = "MESH", conflicts_with = "inverse")]
+    pub onto: Option<PathBuf>,
+    /// From the surface in the map back to its source
+    #[arg(long)]
+    pub inverse: bool,
+    /// The mesh to write
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// An attribute of triangles that is a mass per area: its total is kept (may be repeated)
+    #[arg(long, value_name = "NAME")]
+    pub density: Vec<String>,
+    /// Write NAME_status beside each attribute: 0 copied, 1 interpolated, 2 largest share, 3 split by a seam, 4 missing
+    #[arg(long)]
+    pub status: bool,
+    /// Merge vertices of the meshes as `simplify --weld` does
+    #[arg(long)]
+    pub weld: bool,
+    /// Cut their polygons as `simplify --triangulate` does
+    #[arg(long)]
+    pub triangulate: bool,
+    /// Orient them as `simplify --orient` does
+    #[arg(long)]
+    pub orient: bool,
+}
+
+/// How many triangles are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Amount {
+    Number(usize),
+    /// In percent.
+    Share(f64),
+}
+
+impl Amount {
+    /// The number, of so many.
+    pub fn of(self, all: usize) -> usize {
+        match self {
+            Self::Number(number) => number,
+            Self::Share(percent) => (all as f64 * percent / 100.0).round() as usize,
+        }
+    }
+}
+
+impl std::fmt::Display for Amount {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(number) => write!(formatter, "{number}"),
+            Self::Share(percent) => write!(formatter, "{percent}%"),
+        }
+    }
+}
+
+impl std::str::FromStr for Amount {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || "a number of triangles, or a share such as 2% is needed".to_owned();
+        match text.strip_suffix('%') {
+            Some(percent) => match percent.trim().parse::<f64>() {
+                Ok(percent) if (0.0..=100.0).contains(&percent) => Ok(Self::Share(percent)),
+                _ => Err(wrong()),
+            },
+            None => text.parse().map(Self::Number).map_err(|_| wrong()),
+        }
+    }
+}
+
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   homeo map testdata/meshes/spot.mesh --onto cube -o spot.homeo
@@ -269,6 +431,13 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+fn degrees(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(angle) if (0.0..=180.0).contains(&angle) => Ok(angle),
+        _ => Err("an angle between 0 and 180 degrees is needed".to_owned()),
+    }
+}
+
 fn positive_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= 1e9 => Ok(seconds),
@@ -299,6 +468,13 @@ mod tests {
     fn the_definition_is_consistent() {
         use clap::CommandFactory;
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn amounts_are_numbers_or_shares() {
+        assert_eq!("2%".parse::<Amount>().map(|amount| amount.of(1000)), Ok(20));
+        assert_eq!("120".parse::<Amount>().map(|amount| amount.of(1000)), Ok(120));
+        assert!(["-1", "101%", "%", "2 percent"].iter().all(|text| text.parse::<Amount>().is_err()));
     }
 
     #[test]

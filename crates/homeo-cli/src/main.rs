@@ -10,6 +10,7 @@ mod display;
 mod eval;
 mod failure;
 mod info;
+mod inside;
 mod logging;
 mod map;
 mod memory;
@@ -37,6 +38,9 @@ use failure::{Exit, Failure, Result};
 use outputs::Outputs;
 use session::Session;
 
+/// As typed; wrong usage is reported before the command line is understood.
+const VERBS: [&str; 9] = ["info", "map", "shell", "simplify", "remesh", "transfer", "eval", "verify", "report"];
+
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -49,8 +53,7 @@ fn main() -> ExitCode {
 fn explain_usage(error: &clap::Error) -> u8 {
     if error.use_stderr() {
         let typed: Vec<String> = std::env::args().skip(1).collect();
-        let verb =
-            typed.iter().find(|word| ["info", "map", "shell", "eval", "verify", "report"].contains(&word.as_str()));
+        let verb = typed.iter().find(|word| VERBS.contains(&word.as_str()));
         let message = error.to_string();
         let json = typed.iter().any(|word| word == "--json");
         answer::print_early(verb.map(String::as_str), json, "usage", message.trim_end());
@@ -94,6 +97,9 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
         Verb::Info(options) => info::run(session, options),
         Verb::Map(options) => map::run(session, options, &mut outputs),
         Verb::Shell(options) => shell::run(session, options, &mut outputs),
+        Verb::Simplify(options) => inside::simplify(session, options, &mut outputs),
+        Verb::Remesh(options) => inside::remesh(session, options, &mut outputs),
+        Verb::Transfer(options) => inside::transfer(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),
         Verb::Report(options) => report::run(session, options, &mut outputs),

@@ -9,6 +9,11 @@ pub struct Lines {
 }
 
 impl Lines {
+    /// Adds all lines of another one.
+    pub fn extend(&mut self, others: Self) {
+        self.rows.extend(others.rows);
+    }
+
     /// Adds a line.
     pub fn add(&mut self, label: &str, value: impl ToString) {
         self.rows.push((label.to_owned(), value.to_string()));

@@ -3,6 +3,8 @@
 mod layers;
 mod refuse;
 
+pub use refuse::unfit;
+
 use std::cell::Cell;
 use std::path::Path;
 
@@ -34,7 +36,7 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
         session.display().note(note);
     }
     session.stage("check");
-    let complex = refuse::unfit(session, &mesh, options.triangulate)?;
+    let complex = unfit(session, &mesh, options.triangulate)?;
     session.check()?;
     let made = construct(session, &source_mesh(&mesh.file, complex), &params)?;
     let provenance = provenance(options, &params);
@@ -71,8 +73,8 @@ fn check_outputs(options: &ShellArgs, layers: &[std::path::PathBuf]) -> Result<(
 }
 
 /// A shell, and how it came about.
-struct Made {
-    shell: Shell,
+pub struct Made {
+    pub shell: Shell,
     info: ShellInfo,
     /// The time limit ended its simplification.
     was_cut_short: bool,
@@ -101,7 +103,11 @@ impl Progress for Simplifying<'_> {
     }
 }
 
-fn construct(session: &Session, source: &SourceMesh<3>, params: &ShellParams) -> Result<Made> {
+/// Builds a shell; the time limit ends its simplification.
+///
+/// # Errors
+/// When there is none within the limits.
+pub fn construct(session: &Session, source: &SourceMesh<3>, params: &ShellParams) -> Result<Made> {
     let progress = Simplifying { session, has_shell: Cell::new(false), was_cut_short: Cell::new(false) };
     let (shell, info) = build(source, params, &progress).map_err(|error| explain(session, &error))?;
     session.lift_time_limit();

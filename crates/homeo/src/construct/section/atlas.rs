@@ -2,15 +2,15 @@
 
 use std::collections::HashMap;
 
-use homeo_core::number::Rational;
-use homeo_core::predicate::{Sign, faithful_projection, orient2d};
+use homeo_core::number::{Interval, Scalar};
+use homeo_core::predicate::{Sign, orient2d};
 
 use super::outline::Outline;
 use super::stage::key;
 use super::surface::Surface;
 use super::{Texture, TexturedSurface};
 use crate::construct::shell::prism::sides;
-use crate::map::{Shell, SurfacePoint};
+use crate::map::Shell;
 
 type Point = [f64; 3];
 type Place = [f64; 2];
@@ -129,14 +129,14 @@ impl Atlas {
         self.orientation(marks, place) == self.signs[chart as usize]
     }
 
-    /// The first texture at the point over which a point of the shell lies, and its chart: exact, then rounded.
+    /// The first texture at the point over which a point of the shell lies, and its chart: the triangle is certain, the place rounded.
     pub fn first_texture(&self, point: Point) -> Option<(u32, Place)> {
-        let exact = |x: f64| Rational::from_f64(x);
-        let [x, y, z] = point.map(exact);
         let First { shell, corners, charts } = &self.first;
-        let at = shell.to_source_exact(&shell.project_exact(&[x?, y?, z?]).ok()?).ok()?;
-        let place = interpolated(shell, &at, corners[at.triangle as usize])?;
-        Some((charts[at.triangle as usize], place))
+        let at = shell.on_source(point).ok()?;
+        let values = corners[at.triangle as usize];
+        let weights = at.weights.each_ref().map(Interval::near);
+        let place: Place = [0, 1].map(|i| (0..3).map(|k| weights[k] * values[k][i]).sum());
+        place.iter().all(|x| x.is_finite()).then_some((charts[at.triangle as usize], place))
     }
 
     /// The texture of the given triangles, with its indices numbered anew.
@@ -154,24 +154,4 @@ impl Atlas {
         }
         texture
     }
-}
-
-/// Linear interpolation at a point of a triangle in exact numbers, rounded at the end.
-fn interpolated(shell: &Shell, at: &SurfacePoint, values: [Place; 3]) -> Option<Place> {
-    let source = shell.source();
-    let corners = source.complex().cells()[at.triangle as usize].map(|v| source.positions()[v.index()]);
-    // Seen along an axis that does not lie in the triangle.
-    let axes = faithful_projection(corners[0], corners[1], corners[2])?;
-    let exact = |x: f64| Rational::from_f64(x).unwrap_or(Rational::ZERO);
-    let [a, b, c] = corners.map(|p| axes.map(|axis| exact(p[axis])));
-    let p = axes.map(|axis| at.point[axis].clone());
-    let area = |a: &[Rational; 2], b: &[Rational; 2], c: &[Rational; 2]| {
-        let [u, v] = [b, c].map(|q| [&q[0] - &a[0], &q[1] - &a[1]]);
-        &(&u[0] * &v[1]) - &(&u[1] * &v[0])
-    };
-    let whole = area(&a, &b, &c);
-    let weights = [area(&p, &b, &c), area(&a, &p, &c), area(&a, &b, &p)].map(|part| &part / &whole);
-    let place: Place =
-        std::array::from_fn(|i| (0..3).map(|k| &weights[k] * &exact(values[k][i])).sum::<Rational>().to_f64());
-    place.iter().all(|x| x.is_finite()).then_some(place)
 }

@@ -230,7 +230,11 @@ impl Shell {
     /// # Errors
     /// As for [`project_exact`](Self::project_exact).
     pub fn to_middle(&self, point: Point) -> Result<Enclosed, ShellEvaluationError> {
-        self.enclosed(point, |shell, at| Ok(shell.middle_at(at)), |shell, at| Ok(shell.middle_at(at)))
+        let near = enclosure(&self.middle_at(&self.project(point)?));
+        if near.radius <= self.accuracy {
+            return Ok(near);
+        }
+        Ok(rounded(&self.middle_at(&self.project_exact(&exactly(point))?)))
     }
 
     /// The point of the source surface on the pillar line of a point.
@@ -238,11 +242,15 @@ impl Shell {
     /// # Errors
     /// As for [`project_exact`](Self::project_exact) and [`to_source_exact`](Self::to_source_exact).
     pub fn to_source(&self, point: Point) -> Result<Enclosed, ShellEvaluationError> {
-        self.enclosed(
-            point,
-            |shell, at| shell.meet(&shell.source, &shell.fibre(at)?).map(|met| met.point),
-            |shell, at| shell.to_source_exact(at).map(|met| met.point),
-        )
+        self.on_source(point).map(|met| enclosure(&met.point))
+    }
+
+    /// The triangle of the source on the pillar line of a point, and where in it, enclosed.
+    ///
+    /// # Errors
+    /// As for [`to_source`](Self::to_source).
+    pub fn on_source(&self, point: Point) -> Result<SurfacePoint<Interval>, ShellEvaluationError> {
+        self.meet_closely(&self.source, point)
     }
 
     /// The point of the other section on the pillar line of a point, or of the middle surface where none is kept.
@@ -250,12 +258,10 @@ impl Shell {
     /// # Errors
     /// As for [`to_source`](Self::to_source).
     pub fn to_section(&self, point: Point) -> Result<Enclosed, ShellEvaluationError> {
-        let Some(section) = &self.section else { return self.to_middle(point) };
-        self.enclosed(
-            point,
-            |shell, at| shell.meet(section, &shell.fibre(at)?).map(|met| met.point),
-            |shell, at| shell.to_section_exact(at).map(|met| met.point),
-        )
+        match &self.section {
+            Some(section) => self.meet_closely(section, point).map(|met| enclosure(&met.point)),
+            None => self.to_middle(point),
+        }
     }
 
     /// Whether a point lies in the shell, exactly: in one prism or in several.
@@ -267,20 +273,24 @@ impl Shell {
         is_inside
     }
 
-    /// The image of a point, by enclosing numbers if they decide everything and are accurate enough, or else exactly.
-    fn enclosed(
+    /// Where the pillar line of a point meets a surface: by enclosing numbers if they decide everything and are accurate
+    /// enough, or else exactly.
+    fn meet_closely(
         &self,
+        surface: &ShellSurface,
         point: Point,
-        fast: impl Fn(&Self, &ShellPoint<Interval>) -> Result<[Interval; 3], Stop>,
-        exact: impl Fn(&Self, &ShellPoint<Rational>) -> Result<ExactPoint, ShellEvaluationError>,
-    ) -> Result<Enclosed, ShellEvaluationError> {
+    ) -> Result<SurfacePoint<Interval>, ShellEvaluationError> {
         let at = self.project(point)?;
-        if let Some(enclosed) =
-            fast(self, &at).ok().map(|image| enclosure(&image)).filter(|e| e.radius <= self.accuracy)
-        {
-            return Ok(enclosed);
+        let met = self.fibre(&at).map_err(Stop::from).and_then(|line| self.meet(surface, &line));
+        if let Some(met) = met.ok().filter(|met| enclosure(&met.point).radius <= self.accuracy) {
+            return Ok(met);
         }
-        Ok(rounded(&exact(self, &self.project_exact(&exactly(point))?)?))
+        let exact = self.meet_exactly(surface, &self.project_exact(&exactly(point))?)?;
+        Ok(SurfacePoint {
+            triangle: exact.triangle,
+            weights: exact.weights.each_ref().map(Interval::around),
+            point: exact.point.each_ref().map(Interval::around),
+        })
     }
 
     fn meet_exactly(

@@ -1,0 +1,208 @@
+//! `homeo simplify` and `homeo remesh`: a surface, its shell, another surface in it, and the certified map between them.
+
+use std::path::Path;
+
+use homeo::certificate::Provenance;
+use homeo::construct::section::{
+    self, RemeshParams, SectionError, SimplifyEnd, SimplifyParams, Texture, TexturedSurface,
+};
+use homeo::construct::shell::ShellParams;
+use homeo::map::Shell;
+use homeo::progress::Progress;
+use homeo_verify::Claim;
+use serde_json::{Value, json};
+
+use super::{Targets, attributes, certify, mesh_file, stage_mesh, texture};
+use crate::answer::Answer;
+use crate::args::{InsideArgs, RemeshArgs, SimplifyArgs};
+use crate::failure::{Failure, Result};
+use crate::mesh_input::{self, MeshInput, Requested, source_mesh};
+use crate::outputs::Outputs;
+use crate::proof;
+use crate::session::Session;
+use crate::shell;
+use crate::text::{Lines, file_name, stages};
+
+/// What a construction made of the surface.
+struct Made {
+    section: TexturedSurface,
+    quality: Value,
+    lines: Lines,
+}
+
+/// Fewer triangles.
+pub fn simplify(session: &Session, options: &SimplifyArgs, outputs: &mut Outputs) -> Result<Answer> {
+    let made =
+        json!({"to": options.to.map(|to| to.to_string()), "error": options.error, "features": options.common.features});
+    run(session, &options.common, made, outputs, |shell, start, angle| {
+        let first = start.surface.complex().cell_count();
+        let params = SimplifyParams {
+            triangles: options.to.map_or(0, |to| to.of(first)),
+            largest_error: options.error,
+            feature_angle: angle,
+        };
+        let (section, info) = section::simplify(shell, start, &params, &Sections(session)).map_err(explain)?;
+        let mut lines = Lines::default();
+        let share = 100.0 * info.triangles as f64 / first.max(1) as f64;
+        lines.add("triangles", format!("{} of {first} ({share:.1} %)", info.triangles));
+        if info.end == SimplifyEnd::Exhausted && info.triangles > params.triangles {
+            lines.add("ended", "no edge is left that could be collapsed in this shell");
+        }
+        lines.add("error", format!("{:.2e} at most (root of the mean squared distance to planes)", info.largest_error));
+        let refused = info.refusals;
+        let quality = json!({
+            "triangles": info.triangles, "first_triangles": first, "collapses": info.collapses,
+            "largest_error": info.largest_error, "reached": info.end == SimplifyEnd::Reached,
+            "refused": {"links": refused.links, "shape": refused.shape, "shell": refused.shell, "texture": refused.texture},
+        });
+        Ok(Made { section, quality, lines })
+    })
+}
+
+/// Triangles of about equal size.
+pub fn remesh(session: &Session, options: &RemeshArgs, outputs: &mut Outputs) -> Result<Answer> {
+    let made = json!({"edge": options.edge, "iterations": options.iterations, "features": options.common.features});
+    run(session, &options.common, made, outputs, |shell, start, angle| {
+        let edge_length = options.edge.unwrap_or_else(|| texture::mean_edge(&start.surface));
+        let params = RemeshParams { edge_length, sizing: None, feature_angle: angle, iterations: options.iterations };
+        let (section, info) = section::remesh(shell, start, &params, &Sections(session)).map_err(explain)?;
+        let mean = texture::mean_edge(&section.surface);
+        let mut lines = Lines::default();
+        lines.add("triangles", format!("{} instead of {}", info.triangles, info.first_triangles));
+        lines.add("edges", format!("{mean:.4} long on average, {edge_length:.4} wanted"));
+        let refused = info.refusals;
+        let quality = json!({
+            "triangles": info.triangles, "first_triangles": info.first_triangles, "edge_length": edge_length,
+            "mean_edge_length": mean, "splits": info.splits, "collapses": info.collapses, "flips": info.flips,
+            "moves": info.moves, "iterations": info.iterations,
+            "refused": {"links": refused.links, "shape": refused.shape, "shell": refused.shell, "texture": refused.texture},
+        });
+        Ok(Made { section, quality, lines })
+    })
+}
+
+/// The session, with the stages of sections told apart from those of the shell.
+struct Sections<'s>(&'s Session);
+
+impl Progress for Sections<'_> {
+    fn stage(&self, _: &'static str) {
+        self.0.stage("section");
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
+fn run(
+    session: &Session,
+    options: &InsideArgs,
+    construction: Value,
+    outputs: &mut Outputs,
+    make: impl FnOnce(&Shell, &TexturedSurface, Option<f64>) -> Result<Made>,
+) -> Result<Answer> {
+    let targets = Targets { mesh: &options.output, map: options.map.as_deref() };
+    let format = targets.check(&[&options.input])?;
+    let mesh = read(session, options)?;
+    session.stage("check");
+    let source = source_mesh(&mesh.file, shell::unfit(session, &mesh, options.triangulate)?);
+    let params = ShellParams { thickness: options.thickness, ..ShellParams::default() };
+    let shell = shell::construct(session, &source, &params)?.shell;
+    let carried = texture::of_file(&mesh.file);
+    let start = TexturedSurface { surface: source, texture: carried.as_ref().map(|(texture, _)| texture.clone()) };
+    let made = make(&shell, &start, options.features.map(f64::to_radians))?;
+    session.check()?;
+    let shell = shell.with_section(made.section.surface.clone());
+    let provenance = provenance(options, construction);
+    let claim = certify(session, &shell, &provenance, targets.map, outputs)?;
+    let mut moved = attributes::moved(session, &shell, &mesh.file, &options.density)?;
+    if let (Some(texture), Some((_, like))) = (&made.section.texture, &carried) {
+        let place =
+            moved.iter_mut().find(|moved| moved.attribute.name == like.name && moved.attribute.element == like.element);
+        place.into_iter().for_each(|moved| *moved = texture::carried(texture, like));
+    }
+    let textures = (start.texture.as_ref(), made.section.texture.as_ref());
+    let described = attributes::described(&moved);
+    let mut lines = words(&claim, &shell, made.lines);
+    attributes::tell(&moved, &mut lines);
+    let file = mesh_file(&made.section.surface, attributes::for_file(moved, options.status), &mesh.file);
+    stage_mesh(session, targets.mesh, format, &file, outputs)?;
+    session.end_stage();
+    let mut quality = made.quality;
+    quality["prisms"] = json!(shell.parts().prisms.len());
+    quality["texture"] = described_texture(textures);
+    Ok(answer(session, options, &claim, quality, described, lines, &targets))
+}
+
+fn read(session: &Session, options: &InsideArgs) -> Result<MeshInput> {
+    let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
+    let mesh = mesh_input::read(session, &options.input, requested)?;
+    for note in mesh.changes.iter().chain(&mesh.file.losses) {
+        session.display().note(note);
+    }
+    Ok(mesh)
+}
+
+fn explain(error: SectionError) -> Failure {
+    match error {
+        SectionError::Parameter(_) => Failure::usage(error.to_string()),
+        SectionError::Texture(_) => Failure::input("texture", error.to_string()),
+        // It begins with the source, which the shell was made for.
+        SectionError::NotASurface { .. } | SectionError::Boundary | SectionError::NotASection { .. } => {
+            Failure::bug(error.to_string())
+        }
+    }
+}
+
+/// Nothing that depends on the machine, so that a run repeats bit for bit.
+fn provenance(options: &InsideArgs, construction: Value) -> Provenance {
+    Provenance {
+        source_name: file_name(&options.input),
+        program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
+        options: json!({
+            "thickness": options.thickness, "section": construction,
+            "weld": options.weld, "triangulate": options.triangulate, "orient": options.orient,
+        }),
+    }
+}
+
+fn described_texture((before, after): (Option<&Texture>, Option<&Texture>)) -> Value {
+    match (before, after) {
+        (Some(before), Some(after)) => {
+            json!({"before": texture::orientations(before), "after": texture::orientations(after)})
+        }
+        _ => Value::Null,
+    }
+}
+
+fn words(claim: &Claim, shell: &Shell, made: Lines) -> Lines {
+    let mut lines = Lines::default();
+    lines.add("certificate", proof::holds(claim));
+    lines.add("prisms", shell.parts().prisms.len());
+    lines.extend(made);
+    lines
+}
+
+fn answer(
+    session: &Session,
+    options: &InsideArgs,
+    claim: &Claim,
+    quality: Value,
+    transferred: Value,
+    mut lines: Lines,
+    targets: &Targets,
+) -> Answer {
+    lines.add("time", stages(&session.seconds()));
+    targets.paths().for_each(|path| lines.add("written", path.display()));
+    let shown = |path: &Path| path.display().to_string();
+    let fields = json!({
+        "target": "section",
+        "certificate": proof::claim_json(claim),
+        "quality": quality,
+        "transfer": transferred,
+        "output": shown(targets.mesh),
+        "map": targets.map.map(shown),
+    });
+    let heading = format!("{} onto {}: one-to-one and onto, proved", options.input.display(), targets.mesh.display());
+    Answer::new(fields, lines.below(&heading))
+}
