@@ -122,14 +122,16 @@ fn certified(shell: &Shell, section: &SourceMesh<3>) -> &'static str {
     }
 }
 
-/// Triangles that are turned over or flat in the texture plane, taking the more frequent orientation for the right one,
-/// and pairs that have inner points in common, exactly.
+/// Triangles that are turned over or flat in the texture plane, taking the more frequent orientation of each chart for the
+/// right one, and pairs that have inner points in common, exactly.
 fn turned_and_overlapping(texture: &Texture) -> [usize; 2] {
     let triangles: Vec<[[f64; 2]; 3]> =
         texture.corners.iter().map(|corners| corners.map(|k| texture.coordinates[k as usize])).collect();
     let signs: Vec<Sign> = triangles.iter().map(|&[a, b, c]| orient2d(a, b, c)).collect();
-    let count = |sign: Sign| signs.iter().filter(|s| **s == sign).count();
-    let turned = signs.len() - count(Sign::Positive).max(count(Sign::Negative));
+    let charts = charts(&triangles);
+    let mut counts = vec![[0usize; 3]; triangles.len()];
+    charts.iter().zip(&signs).for_each(|(&chart, &sign)| counts[chart][sign as usize] += 1);
+    let turned = counts.iter().map(|[negative, flat, positive]| flat + negative.min(positive)).sum();
     let parts = |k: usize, other: [[f64; 2]; 3]| {
         let [a, b, c] = triangles[k];
         let beyond = |p, q| other.iter().all(|&x| orient2d(p, q, x) != signs[k]);
@@ -143,6 +145,32 @@ fn turned_and_overlapping(texture: &Texture) -> [usize; 2] {
         ControlFlow::Continue(())
     });
     [turned, overlapping]
+}
+
+/// A number for each triangle, the same for those that are joined by common edges in the texture plane.
+fn charts(triangles: &[[[f64; 2]; 3]]) -> Vec<usize> {
+    let mut edges: Vec<([[u64; 2]; 2], usize)> = Vec::with_capacity(3 * triangles.len());
+    for (t, corners) in triangles.iter().enumerate() {
+        for k in 0..3 {
+            let mut ends = [k, (k + 1) % 3].map(|k| corners[k].map(f64::to_bits));
+            ends.sort_unstable();
+            edges.push((ends, t));
+        }
+    }
+    edges.sort_unstable();
+    let mut parent: Vec<usize> = (0..triangles.len()).collect();
+    fn root(parent: &mut [usize], mut t: usize) -> usize {
+        while parent[t] != t {
+            parent[t] = parent[parent[t]];
+            t = parent[t];
+        }
+        t
+    }
+    for pair in edges.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+        let [a, b] = [pair[0].1, pair[1].1].map(|t| root(&mut parent, t));
+        parent[a.max(b)] = a.min(b);
+    }
+    (0..triangles.len()).map(|t| root(&mut parent, t)).collect()
 }
 
 fn mean_edge(mesh: &SourceMesh<3>) -> f64 {

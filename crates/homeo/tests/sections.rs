@@ -342,6 +342,11 @@ fn texture_stays_embedded_under_simplification() {
         if orient2d(places(&texture)[0][0], places(&texture)[0][1], places(&texture)[0][2]) != sign {
             texture.coordinates.iter_mut().for_each(|p| p[0] = -p[0]);
         }
+        // Waves along the seams, so that their short cuts lie inside and outside.
+        let turn = std::f64::consts::TAU;
+        for [u, v] in &mut texture.coordinates {
+            [*u, *v] = [*u + 0.04 * (3.0 * turn * *v).sin(), *v + 0.04 * (2.0 * turn * *u).sin()];
+        }
         assert_embedded(&texture, sign);
         let start = TexturedSurface { surface: source, texture: Some(texture) };
         assert_two_crossing_circles(&start);
@@ -369,6 +374,29 @@ fn texture_stays_embedded_under_remeshing() {
         assert_section(&shell, &section.surface);
         assert_embedded(section.texture.as_ref().expect("a texture"), sign);
         assert_two_crossing_circles(&section);
+    }
+}
+
+/// Two charts, with seams that end on the boundary of the surface.
+#[test]
+fn texture_of_an_open_surface_stays_embedded() {
+    let whole = torus(20, 12, 3.0);
+    let all = square_texture(20, 12);
+    let is_kept = |cell: &[u32; 3]| cell.iter().all(|&v| whole.positions()[v as usize][0] > -0.2);
+    let kept = indices(&whole).into_iter().zip(&all.corners).filter(|(cell, _)| is_kept(cell));
+    let texture = Texture { corners: kept.map(|(_, corners)| *corners).collect(), ..all };
+    let source = half_torus();
+    let shell = built(&source);
+    let start = TexturedSurface { texture: Some(texture), surface: source };
+    let (coarse, info) = simplify(&shell, &start, &fewer(120), &Silent).expect("a section");
+    assert!(info.triangles < 160, "{info:?}");
+    let params = RemeshParams { iterations: 2, ..RemeshParams::with_edge_length(0.8 * mean_edge(&start.surface)) };
+    let (fine, _) = remesh(&shell, &start, &params, &Silent).expect("a section");
+    for section in [coarse, fine] {
+        assert_section(&shell, &section.surface);
+        assert_embedded(section.texture.as_ref().expect("a texture"), Sign::Positive);
+        assert_eq!(boundary(&section.surface), boundary(&start.surface));
+        assert!(!seams(&section).is_empty());
     }
 }
 

@@ -214,10 +214,13 @@ impl Remeshing<'_> {
     fn collapse(&mut self, a: u32, b: u32) -> bool {
         let [p, q] = [a, b].map(|v| self.editor.surface.point(v));
         if [a, b].map(|v| self.editor.rank(v)) == [Rank::Free; 2] {
+            // The way back onto the source is the dearest part, so it comes last.
             let middle = between(p, q, 0.5);
-            let place = self.editor.on_source(middle).unwrap_or(middle);
-            if self.stays_short(a, b, place) && self.editor.collapse(a, b, Target::At(place)) {
-                return true;
+            if self.editor.surface.can_collapse(a, b) && self.stays_short(a, b, middle) {
+                let place = self.editor.on_source(middle).unwrap_or(middle);
+                if self.editor.collapse(a, b, Target::At(place)) {
+                    return true;
+                }
             }
         }
         [(a, b, q), (b, a, p)].into_iter().any(|(gone, kept, place)| {
