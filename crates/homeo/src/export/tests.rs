@@ -55,6 +55,7 @@ fn report(mesh: CellMesh) -> ReportData {
         distortion: vec![1.0; mesh.cells.len()],
         cells: mesh,
         leaves: vec![Leaf { source: vec![[0.0; 3], [1.0; 3]], target: vec![[0.0; 3], [0.5; 3], [1.0; 3]] }],
+        shell: None,
     }
 }
 

@@ -23,6 +23,14 @@ pub struct ShellParts {
     pub prisms: Vec<[u32; 3]>,
 }
 
+impl ShellParts {
+    /// Whether a column has no length.
+    pub(crate) fn is_pinched(&self, column: u32) -> bool {
+        let column = column as usize;
+        self.bottom[column] == self.middle[column] && self.middle[column] == self.top[column]
+    }
+}
+
 /// A point of a shell: a prism, barycentric weights in its middle triangle (in the prism's order, adding up to 1), and
 /// a height from -1 (bottom) to 1 (top).
 #[derive(Clone, Debug, PartialEq)]
@@ -257,9 +265,7 @@ impl Shell {
     }
 
     fn is_pinched(&self, column: u32) -> bool {
-        let parts = &self.parts;
-        let column = column as usize;
-        parts.bottom[column] == parts.middle[column] && parts.middle[column] == parts.top[column]
+        self.parts.is_pinched(column)
     }
 
     /// The weight of the columns that have a length: 1 where none is pinched.
@@ -275,6 +281,21 @@ impl Shell {
             [(i, false), (j, false), (j, true), (k, true)],
             [(i, false), (i, true), (j, true), (k, true)],
         ]
+    }
+
+    /// The slabs whose boxes meet a box: `2 * prism` is a lower one, `2 * prism + 1` an upper one.
+    pub(crate) fn slabs_near(&self, region: &Aabb) -> Vec<usize> {
+        let mut slabs = Vec::new();
+        self.slabs.query_box(region, |slab| slabs.push(slab));
+        slabs.sort_unstable();
+        slabs
+    }
+
+    /// The tetrahedra of a slab: for each corner the position of its column in the prism, and the corners.
+    pub(crate) fn slab_cells(&self, slab: usize) -> [([usize; 4], [Point; 4]); 3] {
+        let columns = self.parts.prisms[slab / 2].map(|v| level_pair(&self.parts, v as usize, slab % 2));
+        self.tetrahedra((slab / 2) as u32)
+            .map(|cell| (cell.map(|(column, _)| column), cell.map(|(column, is_high)| columns[column][usize::from(is_high)])))
     }
 
     fn project_in_slab(&self, slab: usize, point: &ExactPoint) -> Option<ShellPoint<Rational>> {
