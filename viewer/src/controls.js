@@ -12,7 +12,7 @@ function presets(model) {
   if (model.levels.length) {
     // Spheres hide each other: half of them is cut away.
     const veil = isFlat ? {} : { opacity: 0.1, ...(axis === 'radius' ? { cut: 'target x', cutAt: 0.5, cutFlip: false } : {}) };
-    if (model.data.shell) list.push(['layers', 'Layers', { ...surface, coordinate: 'all', cut: 'source x', cutAt: 0.5, cutFlip: false }]);
+    if (model.data.shell) list.push(['layers', 'Layers', { ...surface, coordinate: 'outer', cut: 'source x', cutAt: 0.5, cutFlip: false }]);
     else list.push(['levels', isFlat ? 'Lines' : 'Level sets', { ...surface, ...veil, coordinate: isFlat ? 'all' : axis, allLevels: true, colouring: isFlat ? 'position' : 'checks' }]);
   }
   if (model.leaves) {
@@ -81,7 +81,7 @@ export class Controls {
     const { coordinates, target } = this.model.data;
     const options = [['none', 'none'], ...coordinates.map((name) => [name, name]), ['all', 'all coordinates']];
     if (this.model.data.shell) {
-      const layers = [['none', 'none'], ...coordinates.map((name) => [name, name]), ['all', 'all']];
+      const layers = [['none', 'none'], ['outer', 'bottom, top'], ...coordinates.map((name) => [name, name]), ['all', 'all three']];
       return group('Shell', this.field('coordinate', (change) => choice('coordinate', 'Layers', layers, change)), this.leafRow());
     }
     const words = () => this.levelWords();

@@ -19,7 +19,7 @@ export const AXES_SIZE = 84;
 /** Level sets are drawn, and answer to the pointer. */
 const LEVEL_LAYERS = 1 | (1 << PICK_LAYER);
 
-/** Colours of the layers of a shell, as shares of 1 of linear light, and how much one sees of them. */
+/** Colours of the layers of a shell, as shares of 1 of linear light. */
 const LAYERS = { bottom: [0.72, 0.3, 0.09], middle: [0.5, 0.52, 0.55], top: [0.1, 0.34, 0.62] };
 /** As many divisions of prisms as make about this many triangles of the pattern. */
 const PATTERN_TRIANGLES = 12000;
@@ -146,7 +146,7 @@ export class Model {
     });
   }
 
-  /** Bottom, middle and top of a shell: equal triangles with equal patterns. */
+  /** Bottom, middle and top of a shell, one triangle per prism on each. */
   buildLayers() {
     this.levels = this.data.levels.map(({ coordinate, label, points, elements }) => {
       const tint = new Vector4(...LAYERS[coordinate], 1);
@@ -224,7 +224,7 @@ export class Model {
       const family = this.levels.filter((level) => level.coordinate === name);
       const chosen = Math.min(family.length - 1, Math.round(((settings.level - 1) / 6) * (family.length - 1)));
       family.forEach((level, index) => {
-        const named = settings.coordinate === 'all' || settings.coordinate === name;
+        const named = settings.coordinate === 'all' || settings.coordinate === name || (settings.coordinate === 'outer' && name !== 'middle');
         level.mesh.visible = named && (settings.allLevels || index === chosen);
       });
     }

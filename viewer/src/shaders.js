@@ -139,7 +139,7 @@ void main() {
   vec3 t = coordinates(vImage);
   vec3 base;
   if (tint.a > 0.0) {
-    base = tint.rgb * (1.0 + 0.16 * checker(t));
+    base = tint.rgb;
   } else if (colouring == 2 && vShade >= 0.0) {
     base = vShade > 0.9985 ? vec3(0.75, 0.05, 0.08) : viridis(vShade * 255.0 / 254.0);
   } else if (colouring == 3) {

@@ -90,6 +90,7 @@ fn demo(target: TargetShape, inverse: Inverse, steps: usize) -> ReportData {
         leaves: demo_leaves(target, inverse),
         cells,
         distortion,
+        shell: None,
     }
 }
 

@@ -13,7 +13,7 @@ const VIEWER: &str = include_str!("viewer.js");
 /// What is seen on the page of a map onto a standard shape.
 const CAPTION: &str = "A point has the same colour on both sides: the colours and squares are those of the target, pulled back by the map. For display the map is interpolated linearly from the images of the vertices.";
 /// What is seen on the page of a shell, scene by scene.
-const SHELL_CAPTION: &str = "Surface: a point has the same colour on both sides; the pattern cuts each triangle of the middle surface into equal ones and is carried to the source along the pillars, and dark lines are the sides of the prisms. Layers: bottom (orange), middle (grey) and top (blue) of the shell, cut open, with the source between them. Pillars: the edges of the prisms from bottom to top, along which points move. Distortion: how much the projection stretches most over how much it stretches least, at each place of the source.";
+const SHELL_CAPTION: &str = "Surface: a point has the same colour on both sides; the pattern cuts each triangle of the middle surface into equal ones and is carried to the source along the pillars, and dark lines are the sides of the prisms. Layers: bottom (orange) and top (blue) of the shell, cut open, with the source between them on the left and the middle surface on the right. Pillars: the edges of the prisms from bottom to top, along which points move. Distortion: how much the projection stretches most over how much it stretches least, at each place of the source.";
 /// The browser itself is told to load nothing from anywhere.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
 

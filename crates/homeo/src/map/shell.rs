@@ -294,8 +294,9 @@ impl Shell {
     /// The tetrahedra of a slab: for each corner the position of its column in the prism, and the corners.
     pub(crate) fn slab_cells(&self, slab: usize) -> [([usize; 4], [Point; 4]); 3] {
         let columns = self.parts.prisms[slab / 2].map(|v| level_pair(&self.parts, v as usize, slab % 2));
-        self.tetrahedra((slab / 2) as u32)
-            .map(|cell| (cell.map(|(column, _)| column), cell.map(|(column, is_high)| columns[column][usize::from(is_high)])))
+        self.tetrahedra((slab / 2) as u32).map(|cell| {
+            (cell.map(|(column, _)| column), cell.map(|(column, is_high)| columns[column][usize::from(is_high)]))
+        })
     }
 
     fn project_in_slab(&self, slab: usize, point: &ExactPoint) -> Option<ShellPoint<Rational>> {
