@@ -94,7 +94,7 @@ float wave(float p, float width) {
 float lines(vec3 weights, float reach) {
   vec3 width = fwidth(weights);
   vec3 near = smoothstep(width * 0.3 * reach, width * 1.3 * reach, max(weights, vec3(0.0)));
-  float room = clamp(1.6 - 4.0 * max(width.x, max(width.y, width.z)), 0.0, 1.0);
+  float room = clamp(1.5 - 7.0 * max(width.x, max(width.y, width.z)), 0.0, 1.0);
   return (1.0 - min(near.x, min(near.y, near.z))) * room;
 }
 
