@@ -12,11 +12,12 @@ function presets(model) {
   if (model.levels.length) {
     // Spheres hide each other: half of them is cut away.
     const veil = isFlat ? {} : { opacity: 0.1, ...(axis === 'radius' ? { cut: 'target x', cutAt: 0.5, cutFlip: false } : {}) };
-    list.push(['levels', isFlat ? 'Lines' : 'Level sets', { ...surface, ...veil, coordinate: isFlat ? 'all' : axis, allLevels: true, colouring: isFlat ? 'position' : 'checks' }]);
+    if (model.data.shell) list.push(['layers', 'Layers', { ...surface, coordinate: 'outer', cut: 'source x', cutAt: 0.5, cutFlip: false }]);
+    else list.push(['levels', isFlat ? 'Lines' : 'Level sets', { ...surface, ...veil, coordinate: isFlat ? 'all' : axis, allLevels: true, colouring: isFlat ? 'position' : 'checks' }]);
   }
   if (model.leaves) {
     const veil = isFlat ? { colouring: 'plain' } : { opacity: 0.08 };
-    list.push(['leaves', 'Leaves', { ...surface, ...veil, leaves: true }]);
+    list.push(['leaves', model.data.shell ? 'Pillars' : 'Leaves', { ...surface, ...veil, leaves: true }]);
   }
   if (!isFlat && model.data.volume) list.push(['section', 'Section', { ...surface, cut: 'target x', cutAt: 0.5, cutFlip: false }]);
   if (model.data.distortion) list.push(['distortion', 'Distortion', { ...surface, colouring: 'distortion' }]);
@@ -30,7 +31,7 @@ export class Controls {
     this.presets = presets(model);
     panel.append(this.presetRow(), this.surfaceGroup());
     if (model.levels.length) panel.append(this.levelGroup());
-    if (model.leaves) panel.append(this.leafGroup());
+    if (model.leaves && !model.data.shell) panel.append(this.leafGroup());
     panel.append(this.cutGroup(), this.viewGroup());
     this.refresh();
   }
@@ -61,7 +62,8 @@ export class Controls {
   }
 
   surfaceGroup() {
-    const colourings = [['checks', 'checkerboard'], ['position', 'place in the target'], ['plain', 'one colour']];
+    const { shell } = this.model.data;
+    const colourings = [['checks', 'checkerboard'], ['position', shell ? 'place on the middle surface' : 'place in the target'], ['plain', 'one colour']];
     if (this.model.data.distortion) colourings.splice(2, 0, ['distortion', 'distortion']);
     const percent = (value) => `${Math.round(value * 100)} %`;
     this.scale = element('div', { class: 'colour-scale' }, element('span', {}, '1'), element('i', {}), element('span', {}, `≥ ${this.model.data.distortion_end}`));
@@ -69,7 +71,7 @@ export class Controls {
       'Surface',
       this.field('colouring', (change) => choice('colouring', 'Colour', colourings, change)),
       this.scale,
-      this.field('checks', (change) => slider('checks', 'Squares', { min: 2, max: 32, step: 2, words: String }, change)),
+      this.field('checks', (change) => slider('checks', shell ? 'Per side' : 'Squares', shell ? { min: 1, max: 16, step: 1, words: String } : { min: 2, max: 32, step: 2, words: String }, change)),
       this.field('opacity', (change) => slider('opacity', 'Opacity', { min: 0, max: 1, step: 0.02, words: percent }, change)),
       this.field('edges', (change) => check('edges', 'Mesh edges', change)),
     );
@@ -78,6 +80,10 @@ export class Controls {
   levelGroup() {
     const { coordinates, target } = this.model.data;
     const options = [['none', 'none'], ...coordinates.map((name) => [name, name]), ['all', 'all coordinates']];
+    if (this.model.data.shell) {
+      const layers = [['none', 'none'], ['outer', 'bottom, top'], ...coordinates.map((name) => [name, name]), ['all', 'all three']];
+      return group('Shell', this.field('coordinate', (change) => choice('coordinate', 'Layers', layers, change)), this.leafRow());
+    }
     const words = () => this.levelWords();
     return group(
       this.model.isFlat ? `Lines of the ${target}` : 'Level sets',
@@ -96,14 +102,20 @@ export class Controls {
   }
 
   leafGroup() {
+    return group('Foliation', this.leafRow());
+  }
+
+  leafRow() {
+    if (!this.model.leaves) return null;
     const count = this.model.data.leaves.starts.length - 1;
-    return group('Foliation', this.field('leaves', (change) => check('leaves', `Leaves (${count})`, change)));
+    const name = this.model.data.shell ? 'Pillars' : 'Leaves';
+    return this.field('leaves', (change) => check('leaves', `${name} (${count})`, change));
   }
 
   cutGroup() {
     const axes = (side) => ['x', 'y', 'z'].slice(0, side === 'target' && this.model.isFlat ? 2 : 3);
     const options = [['none', 'no cut']];
-    for (const side of ['target', 'source']) for (const axis of axes(side)) options.push([`${side} ${axis}`, `${side} ${axis}`]);
+    for (const side of ['target', 'source']) for (const axis of axes(side)) options.push([`${side} ${axis}`, `${side === 'target' && this.model.data.shell ? 'middle' : side} ${axis}`]);
     if (this.model.data.target === 'ball' || this.model.data.target === 'disk') options.splice(1, 0, ['target radius', 'target radius']);
     const words = (value) => {
       if (this.settings.cut === 'none') return '';

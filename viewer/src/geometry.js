@@ -79,8 +79,21 @@ export function orientAlike(elements) {
   return turned;
 }
 
-/** Triangles; `shades` holds one byte per triangle. */
-export function triangleGeometry(points, elements, spaces, shades) {
+/** Barycentric weights from -0.5 to 1.5 as the page holds them: one corner has 1, the others have 0. */
+const [WEIGHT_0, WEIGHT_1] = [16384, 49151];
+
+/** In place of weights per vertex: those of the corners of each triangle in itself. */
+export const cornerWeights = Symbol('corner weights');
+
+function weightsOf(weights, elements) {
+  if (weights !== cornerWeights) return gather(weights, elements, 2);
+  const out = new Uint16Array(elements.length * 2).fill(WEIGHT_0);
+  for (let corner = 0; corner < elements.length; corner++) if (corner % 3 < 2) out[2 * corner + (corner % 3)] = WEIGHT_1;
+  return out;
+}
+
+/** Triangles; `shades` holds one byte per triangle, `weights` two barycentric weights in a prism per vertex. */
+export function triangleGeometry(points, elements, spaces, shades, weights = null) {
   const geometry = new BufferGeometry();
   const normalized = !(points.source instanceof Float32Array);
   const add = (name, array, width, isShare) => geometry.setAttribute(name, new BufferAttribute(array, width, isShare));
@@ -91,6 +104,7 @@ export function triangleGeometry(points, elements, spaces, shades) {
   const shade = new Uint8Array(elements.length * 4);
   if (shades) for (let corner = 0; corner < elements.length; corner++) shade[4 * corner] = shades[Math.floor(corner / 3)];
   add('shade', shade, 4, true);
+  if (weights) add('weights', weightsOf(weights, elements), 2, true);
   return geometry;
 }
 

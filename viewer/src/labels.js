@@ -8,6 +8,7 @@ import { toDisplay } from './space.js';
 function anchors(model, side) {
   const { image_frame: frame, target } = model.data;
   if (side === 0) return [['x', [1.22, 0, 0]], ['y', [0, 1.22, 0]], ['z', [0, 0, 1.22]]];
+  if (model.data.shell) return [];
   const share = (t) => t.map((value, axis) => (frame.high[axis] > frame.low[axis] ? (value - frame.low[axis]) / (frame.high[axis] - frame.low[axis]) : 0));
   const places = {
     square: [['0', [-0.04, -0.04, 0]], ['x = 1', [1.02, -0.05, 0]], ['y = 1', [-0.05, 1.04, 0]]],

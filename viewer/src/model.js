@@ -3,29 +3,40 @@
 import {
   DoubleSide, GLSL3, Group, Mesh, RawShaderMaterial, Scene, Vector2, Vector3, Vector4,
 } from 'three';
-import { orientAlike, polylinePairs, segmentGeometry, triangleGeometry } from './geometry.js';
+import { cornerWeights, orientAlike, polylinePairs, segmentGeometry, triangleGeometry } from './geometry.js';
 import { section } from './section.js';
 import { sourceSpace, targetSpace } from './space.js';
 import {
   PICK_FRAGMENT, SEGMENT_FRAGMENT, SEGMENT_VERTEX, TRIANGLE_FRAGMENT, TRIANGLE_VERTEX,
 } from './shaders.js';
 
-export const TARGETS = ['square', 'disk', 'cube', 'ball'];
+export const TARGETS = ['square', 'disk', 'cube', 'ball', 'middle surface'];
 export const COLOURINGS = ['checks', 'position', 'distortion', 'plain'];
 /** Objects on this layer answer to the pointer. */
 export const PICK_LAYER = 1;
 /** Width and height of the little picture of the source's axes, in pixels. */
 export const AXES_SIZE = 84;
+/** Level sets are drawn, and answer to the pointer. */
+const LEVEL_LAYERS = 1 | (1 << PICK_LAYER);
+
+/** Colours of the layers of a shell, as shares of 1 of linear light. */
+const LAYERS = { bottom: [0.72, 0.3, 0.09], middle: [0.5, 0.52, 0.55], top: [0.1, 0.34, 0.62] };
+/** As many divisions of prisms as make about this many triangles of the pattern. */
+const PATTERN_TRIANGLES = 12000;
 
 /** Settings and what they are at first. `cut` is `none` or side and axis, for example `target x`. */
 export function initialSettings(scene) {
   return {
-    opacity: 1, colouring: 'checks', checks: 8, edges: false,
+    opacity: 1, colouring: 'checks', checks: scene.shell ? divisions(scene.shell.prisms) : 8, edges: false,
     coordinate: 'none', allLevels: true, level: 4,
     leaves: false, cut: 'none', cutAt: 0.5, cutFlip: false,
     linked: true, up: 'z', morph: 0,
     isFlat: scene.dimension === 2,
   };
+}
+
+function divisions(prisms) {
+  return Math.max(2, Math.min(8, Math.round(Math.sqrt(PATTERN_TRIANGLES / prisms))));
 }
 
 /** Signed volume of the surface in display coordinates of a side (signed area for the flat target). */
@@ -45,7 +56,9 @@ export class Model {
   constructor(scene) {
     this.data = scene;
     this.isFlat = scene.dimension === 2;
-    this.spaces = { source: sourceSpace(scene), target: targetSpace(scene) };
+    const source = sourceSpace(scene);
+    // Both sides of a shell lie in the same place of the same space.
+    this.spaces = { source, target: scene.shell ? source : targetSpace(scene) };
     this.root = new Scene();
     this.shared = this.sharedUniforms();
     this.buildSurface();
@@ -72,7 +85,7 @@ export class Model {
   }
 
   triangleMaterial(own = {}) {
-    const values = { skipAxis: -1, opacity: 1, edges: 0, insideSign: 0, ...own };
+    const values = { skipAxis: -1, opacity: 1, edges: 0, insideSign: 0, tint: new Vector4(0, 0, 0, 0), ...own };
     const uniforms = { ...this.shared };
     for (const [name, value] of Object.entries(values)) uniforms[name] = { value };
     return new RawShaderMaterial({
@@ -102,12 +115,12 @@ export class Model {
   }
 
   buildSurface() {
-    const { vertices, surface, distortion } = this.data;
-    const geometry = triangleGeometry(vertices, surface, this.spaces, distortion);
+    const { vertices, surface, distortion, weights } = this.data;
+    const geometry = triangleGeometry(vertices, surface, this.spaces, distortion, weights);
     this.surface = this.add(geometry, this.triangleMaterial({ skipAxis: this.data.target === 'ball' ? -2 : -1 }), { pickable: true });
     this.surface.renderOrder = 10;
-    // Orientation of the surface on both sides tells inside from outside.
-    this.insideSigns = this.isFlat
+    // Orientation of the surface on both sides tells inside from outside. That of a shell is given.
+    this.insideSigns = this.data.shell ? [1, 1] : this.isFlat
       ? [1, orientation(vertices.image, surface, this.spaces.target.scale, true)]
       : [
           orientation(vertices.source, surface, this.spaces.source.scale, false),
@@ -116,6 +129,10 @@ export class Model {
   }
 
   buildLevels() {
+    if (this.data.shell) {
+      this.buildLayers();
+      return;
+    }
     this.levels = this.data.levels.map((level) => {
       const mesh = this.isFlat
         ? this.add(segmentGeometry(level.points, level.elements), this.segmentMaterial([0, 0, 0, 0.999], 1.4))
@@ -126,6 +143,17 @@ export class Model {
           );
       mesh.visible = false;
       return { coordinate: level.coordinate, label: level.label, mesh };
+    });
+  }
+
+  /** Bottom, middle and top of a shell, one triangle per prism on each. */
+  buildLayers() {
+    this.levels = this.data.levels.map(({ coordinate, label, points, elements }) => {
+      const tint = new Vector4(...LAYERS[coordinate], 1);
+      const geometry = triangleGeometry(points, elements, this.spaces, null, cornerWeights);
+      const mesh = this.add(geometry, this.triangleMaterial({ tint, insideSign: 1 }), { pickable: true });
+      mesh.visible = false;
+      return { coordinate, label, mesh };
     });
   }
 
@@ -143,6 +171,7 @@ export class Model {
     this.root.add(this.frame);
     const corner = (n) => [n & 1, (n >> 1) & 1, (n >> 2) & 1];
     const edges = [];
+    const hasOutline = !this.data.shell;
     for (let n = 0; n < 8; n++) for (const bit of [1, 2, 4]) if (!(n & bit)) edges.push([corner(n), corner(n | bit)]);
     const isRound = this.data.target === 'disk' || this.data.target === 'ball';
     const { low, high } = this.data.image_frame;
@@ -157,7 +186,7 @@ export class Model {
     }));
     const circles = this.isFlat ? circle(0, 1) : [...circle(0, 1), ...circle(0, 2), ...circle(1, 2)];
     this.frameInk = [];
-    this.addFrame(isRound ? circles : box, this.frame, { cutSpace: { value: 0 } });
+    if (hasOutline) this.addFrame(isRound ? circles : box, this.frame, { cutSpace: { value: 0 } });
     const still = { cutSpace: { value: 0 }, side: { value: 0 }, resolution: { value: new Vector2(AXES_SIZE, AXES_SIZE) } };
     const unit = { sourceScale: { value: new Vector3(1, 1, 1) }, sourceOffset: { value: new Vector3(0, 0, 0) } };
     this.addFrame([0, 1, 2].map((axis) => [[0, 0, 0], corner(1 << axis)]), this.axes, { ...still, ...unit });
@@ -195,7 +224,7 @@ export class Model {
       const family = this.levels.filter((level) => level.coordinate === name);
       const chosen = Math.min(family.length - 1, Math.round(((settings.level - 1) / 6) * (family.length - 1)));
       family.forEach((level, index) => {
-        const named = settings.coordinate === 'all' || settings.coordinate === name;
+        const named = settings.coordinate === 'all' || settings.coordinate === name || (settings.coordinate === 'outer' && name !== 'middle');
         level.mesh.visible = named && (settings.allLevels || index === chosen);
       });
     }
@@ -274,6 +303,8 @@ export class Model {
     this.shared.side.value = side === 0 ? morph : 1;
     this.shared.resolution.value.set(width, height);
     this.frame.visible = side === 1 || morph >= 0.5;
+    // The target's side of a shell is the middle layer.
+    if (this.data.shell) for (const { coordinate, mesh } of this.levels) mesh.layers.mask = coordinate === 'middle' && side === 1 ? 0 : LEVEL_LAYERS;
     this.surface.material.uniforms.insideSign.value = this.insideSigns[side === 0 && morph < 0.5 ? 0 : 1];
   }
 

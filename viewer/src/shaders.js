@@ -10,7 +10,7 @@ vec3 place(vec3 source, vec3 image) {
 
 /** Colours of target points, the checkerboard, and the cut; shared by surfaces and lines. */
 const TARGET = /* glsl */ `
-uniform int target; // 0 square, 1 disk, 2 cube, 3 ball
+uniform int target; // 0 square, 1 disk, 2 cube, 3 ball, 4 middle surface of a shell
 uniform vec3 frameLow, frameSize;
 uniform float checks;
 uniform int cutSpace; // 0 none, 1 source, 2 target
@@ -36,7 +36,10 @@ vec3 fromOklab(vec3 c) {
                     -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s), 0.0, 1.0);
 }
 
-vec3 centred(vec3 t) { return target == 0 ? vec3(2.0 * t.xy - 1.0, 0.0) : target == 2 ? 2.0 * t - 1.0 : t; }
+vec3 centred(vec3 t) {
+  if (target == 4) return 2.0 * (t - frameLow) / max(frameSize, vec3(1e-30)) - 1.0;
+  return target == 0 ? vec3(2.0 * t.xy - 1.0, 0.0) : target == 2 ? 2.0 * t - 1.0 : t;
+}
 
 vec3 placeColour(vec3 t) {
   vec3 c = centred(t);
@@ -50,14 +53,17 @@ vec3 encode(vec3 linear) {
 export const TRIANGLE_VERTEX = /* glsl */ `precision highp float;
 in vec3 position, image;
 in vec4 normal, imageNormal, shade;
+in vec2 weights;
 uniform mat4 viewMatrix, projectionMatrix;
-out vec3 vSource, vImage, vNormal, vView, vEdge;
+out vec3 vSource, vImage, vNormal, vView, vEdge, vWeights;
 flat out float vShade;
 ${PLACE}
 void main() {
   vSource = position;
   vImage = image;
   vShade = shade.x;
+  vec2 w = 2.0 * weights - 0.5;
+  vWeights = vec3(w, 1.0 - w.x - w.y);
   vEdge = vec3(gl_VertexID % 3 == 0, gl_VertexID % 3 == 1, gl_VertexID % 3 == 2);
   vec4 view = viewMatrix * vec4(place(position, image), 1.0);
   vView = -view.xyz;
@@ -66,7 +72,7 @@ void main() {
 }`;
 
 const TRIANGLE_INPUT = /* glsl */ `precision highp float;
-in vec3 vSource, vImage, vNormal, vView, vEdge;
+in vec3 vSource, vImage, vNormal, vView, vEdge, vWeights;
 flat in float vShade;
 ${TARGET}`;
 
@@ -75,6 +81,7 @@ uniform int skipAxis;   // checkerboard coordinate that is constant here, -1 for
 uniform int colouring;  // 0 checkerboard, 1 plain position, 2 distortion, 3 one colour
 uniform float opacity, edges, insideSign;
 uniform vec3 edgeColour;
+uniform vec4 tint;      // with alpha 1 the colour of a layer
 out vec4 colour;
 
 // One factor of a checkerboard, +1 or -1, averaged over the width of a pixel.
@@ -83,8 +90,22 @@ float wave(float p, float width) {
   return 2.0 * (abs(fract((p - 0.5 * w) * 0.5) - 0.5) - abs(fract((p + 0.5 * w) * 0.5) - 0.5)) / w;
 }
 
+// How much of a pixel belongs to the lines where a weight is 0; lines fade where they would cover all.
+float lines(vec3 weights, float reach) {
+  vec3 width = fwidth(weights);
+  vec3 near = smoothstep(width * 0.3 * reach, width * 1.3 * reach, max(weights, vec3(0.0)));
+  float room = clamp(1.5 - 7.0 * max(width.x, max(width.y, width.z)), 0.0, 1.0);
+  return (1.0 - min(near.x, min(near.y, near.z))) * room;
+}
+
 float checker(vec3 t) {
   vec3 p;
+  if (target == 4) {
+    // Lines parallel to the sides cut the prism's triangle into ones that point up and down.
+    p = vWeights * checks;
+    vec3 w = fwidth(p);
+    return wave(p.x, w.x) * wave(p.y, w.y) * wave(p.z, w.z);
+  }
   bool round_target = target == 1 || target == 3;
   if (round_target) {
     float r = length(t);
@@ -117,7 +138,9 @@ void main() {
   if (cutAway(vSource, vImage)) discard;
   vec3 t = coordinates(vImage);
   vec3 base;
-  if (colouring == 2 && vShade >= 0.0) {
+  if (tint.a > 0.0) {
+    base = tint.rgb;
+  } else if (colouring == 2 && vShade >= 0.0) {
     base = vShade > 0.9985 ? vec3(0.75, 0.05, 0.08) : viridis(vShade * 255.0 / 254.0);
   } else if (colouring == 3) {
     base = vec3(0.55, 0.58, 0.62);
@@ -132,6 +155,7 @@ void main() {
   }
   vec3 normal = normalize(vNormal);
   vec3 view = normalize(vView);
+  if (target == 4 && colouring != 3) base *= 1.0 - 0.8 * lines(vWeights, 1.2);
   bool inside = (gl_FrontFacing ? 1.0 : -1.0) * insideSign < 0.0;
   if (inside) base = mix(base, vec3(dot(base, vec3(0.3, 0.6, 0.1))), 0.55) * 0.7;
   if (dot(normal, view) < 0.0) normal = -normal;

@@ -14,7 +14,8 @@ function fit(frame, low, high, radius) {
 export function sourceSpace(scene) {
   const { low, high } = scene.source_frame;
   const centre = low.map((value, axis) => (value + high[axis]) / 2);
-  const points = scene.vertices.source;
+  // The pillars of a shell reach beyond its surfaces.
+  const points = scene.shell && scene.leaves ? scene.leaves.points.source : scene.vertices.source;
   let radius = 0;
   for (let i = 0; i < points.length; i += 3) {
     const p = fromShares(scene.source_frame, [points[i] / 65535, points[i + 1] / 65535, points[i + 2] / 65535]);

@@ -69,8 +69,12 @@ async function checkControls(page) {
   await expectChange(page, 'mesh edges', () => page.check('input[name=edges]'));
   await expectChange(page, 'opacity', () => page.fill('input[name=opacity]', '0.4'));
   await expectChange(page, 'level sets', () => page.selectOption('select[name=coordinate]', 'all'));
-  await expectChange(page, 'one level', () => page.uncheck('input[name=allLevels]'));
-  await expectChange(page, 'level slider', () => page.fill('input[name=level]', '6'));
+  if (await page.locator('input[name=allLevels]').count()) {
+    await expectChange(page, 'one level', () => page.uncheck('input[name=allLevels]'));
+    await expectChange(page, 'level slider', () => page.fill('input[name=level]', '6'));
+  } else {
+    await expectChange(page, 'one layer', () => page.selectOption('select[name=coordinate]', 'bottom'));
+  }
   await expectChange(page, 'leaves', () => page.check('input[name=leaves]'));
   await expectChange(page, 'cut', () => page.selectOption('select[name=cut]', 'target y'));
   await expectChange(page, 'cut position', () => page.fill('input[name=cutAt]', '0.3'));

@@ -69,7 +69,7 @@ pub enum Verb {
     Eval(EvalArgs),
     /// Check the certificate of a map, independently of how it was made
     Verify(VerifyArgs),
-    /// Show a map: one HTML page that needs nothing else
+    /// Show a map or a shell: one HTML page that needs nothing else
     Report(ReportArgs),
 }
 
@@ -154,7 +154,7 @@ pub struct MapArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
-  homeo shell testdata/meshes/torus.obj -o torus.homeo --layers torus
+  homeo shell testdata/meshes/torus.obj -o torus.homeo --report torus.html
 
 The certificate is checked on the bytes that were written; only then do they get their name.
 The middle surface of the first shell is the surface itself; simplification takes prisms away.
@@ -175,6 +175,9 @@ pub struct ShellArgs {
     /// Rounds of simplification at most; with 0 the middle surface is the surface itself
     #[arg(long, value_name = "N", default_value_t = 30)]
     pub rounds: usize,
+    /// Write one self-contained HTML page that shows the shell
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
     /// Also write bottom, middle and top as PREFIX_bottom.obj, PREFIX_middle.obj, PREFIX_top.obj
     #[arg(long, value_name = "PREFIX")]
     pub layers: Option<PathBuf>,
@@ -398,9 +401,12 @@ pub struct VerifyArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   homeo map testdata/meshes/face.obj --onto disk -o face.homeo
-  homeo report face.homeo -o face.html")]
+  homeo report face.homeo -o face.html
+
+The map is a foliation or a shell. The page shows source and image side by side with the same
+pattern on both, the distortion, and level sets and leaves, or the layers and pillars of the shell.")]
 pub struct ReportArgs {
-    /// The map
+    /// The map, or a shell
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
     /// The page to write

@@ -1,18 +1,20 @@
 //! `homeo report`, and `--report` of other verbs: one HTML page.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use homeo::certificate::{FoliationMap, StoredMap};
-use homeo::export::{VerdictWords, report_of_map, write_report};
-use homeo::map::{Bijection, Target};
+use homeo::export::{ReportData, VerdictWords, report_of_map, report_of_shell, write_report};
+use homeo::map::{Bijection, Shell};
 use homeo::progress::Progress;
 use homeo_core::mesh::SimplicialComplex;
+use homeo_core::spatial::Aabb;
 use homeo_verify::Claim;
 use serde_json::json;
 
 use crate::answer::Answer;
 use crate::args::ReportArgs;
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use crate::outputs::{Outputs, check_target};
 use crate::proof;
 use crate::sampled::{self, Sampled};
@@ -23,31 +25,37 @@ use crate::text::{Lines, ratio, stages};
 pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Result<Answer> {
     check_target(&options.output, &[&options.map])?;
     let (map, claim) = proof::open_certified(session, &options.map)?;
-    let StoredMap::Foliation(map) = map else {
-        let message = "pages for shells are not made yet; write the layers of the shell with \
-                       `homeo shell MESH --layers PREFIX` and open them in a mesh viewer";
-        return Err(Failure::input("no-page", message));
+    let (title, quality) = match map {
+        StoredMap::Foliation(map) => {
+            session.stage("sample");
+            let sampled = sampled::sample(&map);
+            session.check()?;
+            session.stage("write");
+            let title = title(&options.map, map.target().name());
+            stage(session, &options.output, &title, &map, &claim, &sampled, outputs)?;
+            (title, json!({"sampled": sampled.quality()}))
+        }
+        StoredMap::Shell(shell) => {
+            session.stage("write");
+            let title = title(&options.map, "middle surface of its shell");
+            stage_shell(session, &options.output, &title, &shell, &claim, outputs)?;
+            (title, json!({"prisms": shell.parts().prisms.len()}))
+        }
     };
-    session.stage("sample");
-    let sampled = sampled::sample(&map);
-    session.check()?;
-    session.stage("write");
-    let title = title(&options.map, map.target());
-    stage(session, &options.output, &title, &map, &claim, &sampled, outputs)?;
     session.end_stage();
     let mut lines = Lines::default();
     lines.add("written", options.output.display());
     lines.add("time", stages(&session.seconds()));
     let fields = json!({
         "certificate": proof::claim_json(&claim),
-        "quality": {"sampled": sampled.quality()},
+        "quality": quality,
         "output": options.output.display().to_string(),
     });
     Ok(Answer::new(fields, lines.below(&format!("{title}: certified"))))
 }
 
 /// The heading of a page.
-pub fn title(input: &Path, target: Target) -> String {
+pub fn title(input: &Path, target: &str) -> String {
     let name = input.file_name().map_or_else(|| input.display().to_string(), |n| n.to_string_lossy().into_owned());
     format!("{name} onto the {target}")
 }
@@ -66,17 +74,39 @@ pub fn stage(
     outputs: &mut Outputs,
 ) -> Result<()> {
     let subtitle = format!("simplicial foliation, homeo {}", env!("CARGO_PKG_VERSION"));
-    let mut data = report_of_map(map, title, &subtitle, verdict(claim));
+    let mut data = report_of_map(map, title, &subtitle, verdict(claim, &claim.target));
     data.facts = facts(map, sampled);
+    write(session, path, data, outputs)
+}
+
+/// Stages the page of a shell.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn stage_shell(
+    session: &Session,
+    path: &Path,
+    title: &str,
+    shell: &Shell,
+    claim: &Claim,
+    outputs: &mut Outputs,
+) -> Result<()> {
+    let subtitle = format!("prismatic shell, homeo {}", env!("CARGO_PKG_VERSION"));
+    let mut data = report_of_shell(shell, title, &subtitle, verdict(claim, "middle surface"));
+    data.facts = shell_facts(shell, claim);
+    write(session, path, data, outputs)
+}
+
+fn write(session: &Session, path: &Path, mut data: ReportData, outputs: &mut Outputs) -> Result<()> {
     data.stage_seconds = session.seconds().into_iter().map(|(name, s)| (name.to_owned(), s)).collect();
     outputs.stage(session, path, |out| write_report(&data, out).map_err(|e| e.to_string()))?;
     session.check()
 }
 
-fn verdict(claim: &Claim) -> VerdictWords {
+fn verdict(claim: &Claim, target: &str) -> VerdictWords {
     VerdictWords {
         holds: true,
-        headline: format!("One-to-one and onto the {}, proved", claim.target),
+        headline: format!("One-to-one and onto the {target}, proved"),
         sentences: vec![claim.statement.clone()],
         checked: claim.checked.iter().map(|&(what, count)| (what.to_owned(), count)).collect(),
         limits: claim.limits.clone(),
@@ -97,6 +127,38 @@ fn facts(map: &FoliationMap, sampled: &Sampled) -> Vec<(String, String)> {
         fact("stretch, largest (sampled)", ratio(sampled.quantile(1.0))),
         fact("error of floating-point images", format!("at most {:.1e}", sampled.max_radius)),
     ]
+}
+
+fn shell_facts(shell: &Shell, claim: &Claim) -> Vec<(String, String)> {
+    let (source, parts) = (shell.source(), shell.parts());
+    let columns: BTreeSet<u32> = parts.prisms.iter().flatten().copied().collect();
+    let lengths = |ends: &[[f64; 3]]| {
+        let length = |&v: &u32| {
+            let (end, middle) = (ends[v as usize], parts.middle[v as usize]);
+            (0..3).map(|axis| (end[axis] - middle[axis]).powi(2)).sum::<f64>().sqrt()
+        };
+        columns.iter().map(length).fold(0.0, f64::max)
+    };
+    let (below, above) = (lengths(&parts.bottom), lengths(&parts.top));
+    let hull = Aabb::of(source.positions());
+    let side = (0..3).map(|axis| hull.high[axis] - hull.low[axis]).fold(f64::MIN_POSITIVE, f64::max);
+    let is_pinched = |v: &&u32| {
+        let v = **v as usize;
+        parts.bottom[v] == parts.middle[v] && parts.middle[v] == parts.top[v]
+    };
+    let checked = |what: &str| claim.checked.iter().find(|(name, _)| name.starts_with(what)).map(|(_, count)| *count);
+    let fact = |label: &str, value: String| (label.to_owned(), value);
+    let mut facts = vec![
+        fact("vertices", source.complex().vertex_count().to_string()),
+        fact("triangles", source.complex().cell_count().to_string()),
+        fact("prisms", parts.prisms.len().to_string()),
+        fact("columns", columns.len().to_string()),
+        fact("columns pinched to a point", columns.iter().filter(is_pinched).count().to_string()),
+        fact("largest thickness", format!("{} of the longest side", ratio(below.max(above) / side))),
+    ];
+    let counts = [("components", "components of the source"), ("boundary edges", "boundary edges")];
+    facts.extend(counts.iter().filter_map(|(label, what)| Some(fact(label, checked(what)?.to_string()))));
+    facts
 }
 
 fn counts<const K: usize>(

@@ -252,14 +252,34 @@ fn layers_are_meshes_and_limits_are_kept() {
 }
 
 #[test]
-fn a_page_is_not_made_yet() {
-    let folder = Folder::new();
-    folder.write("m.obj", torus(16, 8));
-    folder.line("shell m.obj -o m.homeo -q").expect(0);
-    let run = folder.line("report m.homeo -o m.html --json").expect(3);
-    assert_eq!(run.json()["error"]["code"], "no-page");
-    assert!(run.stderr.contains("shell MESH --layers"), "{}", run.stderr);
-    assert_eq!(folder.names(), ["m.homeo", "m.obj"]);
+fn a_page_shows_the_shell() {
+    for (obj, pinched) in [(torus(24, 10), 0), (singular(), 1), (torus(16, 8).replacen("f 1 9 10\n", "", 1), 0)] {
+        let folder = Folder::new();
+        folder.write("m.obj", &obj);
+        let made = folder.line("shell m.obj -o m.homeo --report made.html --json -q").expect(0).json();
+        assert!(made["seconds"]["report"].is_number());
+        let report = folder.line("report m.homeo -o m.html --json -q").expect(0).json();
+        assert_eq!((&report["output"], &report["certificate"]), (&"m.html".into(), &made["certificate"]));
+        assert_eq!(report["quality"]["prisms"], made["quality"]["prisms"]);
+        let facts = |page: &str| {
+            let from = page.find("<section id=\"facts\">").unwrap();
+            page[from..from + page[from..].find("</table>").unwrap()].to_owned()
+        };
+        let (page, first) = (folder.text("m.html"), folder.text("made.html"));
+        assert_eq!(facts(&page), facts(&first), "the page of the file is that of the shell");
+        assert!(page.contains("One-to-one and onto the middle surface, proved") && page.contains("id=\"distortion\""));
+        let fact = |label: &str, value: &str| {
+            let row = format!("<th scope=\"row\">{label}</th><td>{value}");
+            assert!(page.contains(&row), "{row} is missing in {}", facts(&page));
+        };
+        fact("triangles", &made["input"]["triangles"].to_string());
+        fact("prisms", &made["quality"]["prisms"].to_string());
+        fact("columns pinched to a point", &pinched.to_string());
+        fact("components", "1");
+        fact("largest thickness", "0.");
+        let same = folder.line("shell m.obj -o same.html --report same.html").expect(2);
+        assert!(same.stderr.contains("two outputs"), "{}", same.stderr);
+    }
 }
 
 #[test]

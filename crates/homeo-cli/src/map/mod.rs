@@ -62,7 +62,7 @@ pub fn run(session: &Session, options: &MapArgs, outputs: &mut Outputs) -> Resul
     }
     if let Some(path) = &options.report {
         session.stage("report");
-        let title = report::title(&options.input, target);
+        let title = report::title(&options.input, target.name());
         report::stage(session, path, &title, &map, &claim, &sampled, outputs)?;
     }
     session.end_stage();

@@ -22,6 +22,7 @@ use crate::failure::{Failure, Result};
 use crate::mesh_input::{self, Requested, source_mesh};
 use crate::outputs::{Outputs, check_target};
 use crate::proof;
+use crate::report;
 use crate::session::Session;
 use crate::text::{Lines, counted, file_name, stages};
 
@@ -47,6 +48,11 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
         session.stage("layers");
         layers::stage(session, paths, made.shell.parts(), outputs)?;
     }
+    if let Some(path) = &options.report {
+        session.stage("report");
+        let title = report::title(&options.input, "middle surface of its shell");
+        report::stage_shell(session, path, &title, &made.shell, &claim, outputs)?;
+    }
     session.end_stage();
     let shown = |path: &std::path::PathBuf| path.display().to_string();
     let fields = json!({
@@ -56,20 +62,20 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
         "output": options.output.as_ref().map(shown),
         "layers": layer_paths.as_ref().map(|paths| paths.iter().map(shown).collect::<Vec<_>>()),
     });
-    let written: Vec<&Path> = options.output.iter().chain(layer_paths.iter().flatten()).map(|p| p.as_path()).collect();
+    let written = [&options.output, &options.report].into_iter().flatten().chain(layer_paths.iter().flatten());
+    let written: Vec<&Path> = written.map(|path| path.as_path()).collect();
     Ok(Answer::new(fields, words(session, options, &made, &claim, &written)))
 }
 
 fn check_outputs(options: &ShellArgs, layers: &[std::path::PathBuf]) -> Result<()> {
-    for path in options.output.iter().chain(layers) {
+    let outputs: Vec<&std::path::PathBuf> = options.output.iter().chain(&options.report).chain(layers).collect();
+    for (index, path) in outputs.iter().enumerate() {
         check_target(path, &[&options.input])?;
-    }
-    match &options.output {
-        Some(path) if layers.contains(path) => {
-            Err(Failure::usage(format!("two outputs have the name {}", path.display())))
+        if outputs[..index].contains(path) {
+            return Err(Failure::usage(format!("two outputs have the name {}", path.display())));
         }
-        _ => Ok(()),
     }
+    Ok(())
 }
 
 /// A shell, and how it came about.

@@ -1,5 +1,7 @@
 //! What a report is made from.
 
+use crate::map::ShellParts;
+
 /// The shape that the map goes onto, with the coordinates in which images are given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TargetShape {
@@ -11,24 +13,32 @@ pub enum TargetShape {
     Cube,
     /// The round ball of radius 1 about the origin.
     Ball,
+    /// The middle surface of a shell, in the space of the source.
+    Middle,
 }
 
 impl TargetShape {
     /// Dimension of the shape, 2 or 3.
     pub fn dimension(self) -> usize {
         match self {
-            Self::Square | Self::Disk => 2,
+            Self::Square | Self::Disk | Self::Middle => 2,
             Self::Cube | Self::Ball => 3,
         }
     }
 
-    /// The name in running text and in file names: `square`, `disk`, `cube`, `ball`.
+    /// Dimension of the space that the shape is drawn in, 2 or 3.
+    pub(super) fn space_dimension(self) -> usize {
+        if self == Self::Middle { 3 } else { self.dimension() }
+    }
+
+    /// The name in running text: `square`, `disk`, `cube`, `ball`, `middle surface`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Square => "square",
             Self::Disk => "disk",
             Self::Cube => "cube",
             Self::Ball => "ball",
+            Self::Middle => "middle surface",
         }
     }
 }
@@ -111,6 +121,15 @@ pub struct Leaf {
     pub target: Vec<[f64; 3]>,
 }
 
+/// What a report on a shell shows besides the projection.
+#[derive(Clone, Debug)]
+pub struct ShellPicture {
+    /// Layers and prisms.
+    pub parts: ShellParts,
+    /// For each cell the prism that it lies in.
+    pub prism_of_cell: Vec<u32>,
+}
+
 /// All that a report shows. Nothing in it is computed by the report except pictures and statistics.
 #[derive(Clone, Debug)]
 pub struct ReportData {
@@ -133,6 +152,8 @@ pub struct ReportData {
     /// For each cell the ratio (at least 1) of the largest to the smallest singular value of the linear map
     /// on it; infinite where the cell collapses. Empty where it was not computed.
     pub distortion: Vec<f64>,
+    /// With the target [`TargetShape::Middle`] the shell; otherwise nothing.
+    pub shell: Option<ShellPicture>,
 }
 
 impl ReportData {
@@ -168,7 +189,36 @@ impl ReportData {
                 return Err(format!("leaf {index} has a coordinate that is not finite"));
             }
         }
-        Ok(())
+        match &self.shell {
+            None if self.target == TargetShape::Middle => Err("there is a middle surface, but no shell".into()),
+            Some(_) if self.target != TargetShape::Middle => {
+                Err(format!("there is a shell, but the target is the {}", self.target.name()))
+            }
+            Some(shell) => shell.check(mesh.cells.len()),
+            None => Ok(()),
+        }
+    }
+}
+
+impl ShellPicture {
+    fn check(&self, cells: usize) -> Result<(), String> {
+        let ShellParts { bottom, middle, top, prisms } = &self.parts;
+        if bottom.len() != middle.len() || top.len() != middle.len() {
+            return Err("the layers differ in the number of their points".into());
+        }
+        if let Some(prism) = prisms.iter().position(|columns| columns.iter().any(|&v| v as usize >= middle.len())) {
+            return Err(format!("prism {prism} has a column that does not exist"));
+        }
+        if self.prism_of_cell.len() != cells {
+            return Err(format!("{cells} cells, but the prisms of {}", self.prism_of_cell.len()));
+        }
+        if let Some(cell) = self.prism_of_cell.iter().position(|&prism| prism as usize >= prisms.len()) {
+            return Err(format!("cell {cell} lies in a prism that does not exist"));
+        }
+        match [bottom, middle, top].into_iter().find_map(|points| first_not_finite(points)) {
+            Some(column) => Err(format!("column {column} has a coordinate that is not finite")),
+            None => Ok(()),
+        }
     }
 }
 

@@ -25,6 +25,7 @@
 //!     },
 //!     leaves: Vec::new(),
 //!     distortion: vec![1.0, 1.0],
+//!     shell: None,
 //! };
 //! let mut page = Vec::new();
 //! write_report(&data, &mut page)?;
@@ -39,6 +40,8 @@ mod leaves;
 mod levels;
 mod marching;
 mod of_map;
+mod of_shell;
+mod overlay;
 mod pack;
 mod page;
 mod scene;
@@ -46,8 +49,9 @@ mod simplify;
 #[cfg(test)]
 mod tests;
 
-pub use data::{CellList, CellMesh, Leaf, ReportData, TargetShape, VerdictWords};
+pub use data::{CellList, CellMesh, Leaf, ReportData, ShellPicture, TargetShape, VerdictWords};
 pub use of_map::report_of_map;
+pub use of_shell::report_of_shell;
 
 use std::io::{self, Write};
 

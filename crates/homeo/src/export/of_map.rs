@@ -32,6 +32,7 @@ pub fn report_of_map(map: &FoliationMap, title: &str, subtitle: &str, verdict: V
         cells,
         leaves,
         distortion,
+        shell: None,
     }
 }
 

@@ -67,6 +67,11 @@ impl Block {
         }
     }
 
+    /// Adds numbers of 16 bits.
+    pub fn words(&mut self, words: &[u16]) -> Slot {
+        self.push("u16", words.len(), words.iter().flat_map(|word| word.to_le_bytes()))
+    }
+
     /// Adds bytes.
     pub fn octets(&mut self, octets: &[u8]) -> Slot {
         self.push("u8", octets.len(), octets.iter().copied())

@@ -1,6 +1,6 @@
 //! The page's text: HTML around the picture.
 
-use super::data::{ReportData, VerdictWords};
+use super::data::{ReportData, TargetShape, VerdictWords};
 use super::histogram::{Statistics, histogram_svg};
 use super::pack::write_base64;
 use super::scene::Scene;
@@ -10,6 +10,10 @@ use std::io::{self, Write};
 const STYLE: &str = include_str!("page.css");
 /// The viewer, generated from `viewer/` by `scripts/build-viewer`.
 const VIEWER: &str = include_str!("viewer.js");
+/// What is seen on the page of a map onto a standard shape.
+const CAPTION: &str = "A point has the same colour on both sides: the colours and squares are those of the target, pulled back by the map. For display the map is interpolated linearly from the images of the vertices.";
+/// What is seen on the page of a shell, scene by scene.
+const SHELL_CAPTION: &str = "Surface: a point has the same colour on both sides; the pattern cuts each triangle of the middle surface into equal ones and is carried to the source along the pillars, and dark lines are the sides of the prisms. Layers: bottom (orange) and top (blue) of the shell, cut open, with the source between them on the left and the middle surface on the right. Pillars: the edges of the prisms from bottom to top, along which points move. Distortion: how much the projection stretches most over how much it stretches least, at each place of the source.";
 /// The browser itself is told to load nothing from anywhere.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
 
@@ -20,7 +24,7 @@ pub(super) fn write_page(data: &ReportData, scene: &Scene, out: &mut impl Write)
     write_viewer(data, scene, out)?;
     out.write_all(b"<div class=\"columns\">\n")?;
     write_claim(&data.verdict, out)?;
-    write_limits(&data.verdict, out)?;
+    write_limits(data, out)?;
     write_distortion(data, out)?;
     write_facts(data, out)?;
     out.write_all(b"</div>\n</main>\n<footer>This page is self-contained and loads nothing from the network. The picture is a display; the claim rests on the map file, which <code>homeo verify</code> checks.</footer>\n")?;
@@ -57,8 +61,9 @@ fn write_viewer(data: &ReportData, scene: &Scene, out: &mut impl Write) -> io::R
     )?;
     writeln!(
         out,
-        "</section>\n<p class=\"caption\">Left the source, right the {}. A point has the same colour on both sides: the colours and squares are those of the target, pulled back by the map. For display the map is interpolated linearly from the images of the vertices.",
-        data.target.name()
+        "</section>\n<p class=\"caption\">Left the source, right the {}. {}",
+        data.target.name(),
+        if data.target == TargetShape::Middle { SHELL_CAPTION } else { CAPTION }
     )?;
     for note in &scene.manifest.notes {
         write!(out, " {}", escape(note))?;
@@ -83,15 +88,20 @@ fn write_claim(verdict: &VerdictWords, out: &mut impl Write) -> io::Result<()> {
     out.write_all(b"</section>\n")
 }
 
-fn write_limits(verdict: &VerdictWords, out: &mut impl Write) -> io::Result<()> {
+fn write_limits(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "<section id=\"limits\">\n<h2>What is not claimed</h2>\n<ul>")?;
-    for limit in &verdict.limits {
+    for limit in &data.verdict.limits {
         writeln!(out, "<li>{}</li>", escape(limit))?;
     }
     // True of every report, whatever the caller says.
+    let how = if data.target == TargetShape::Middle {
+        "the source is cut along the prisms in floating point"
+    } else {
+        "the map is interpolated linearly in each cell"
+    };
     writeln!(
         out,
-        "<li>That this picture is exact: coordinates are rounded to 16 bits per axis, and the map is interpolated linearly in each cell.</li>\n</ul>\n</section>"
+        "<li>That this picture is exact: coordinates are rounded to 16 bits per axis, and {how}.</li>\n</ul>\n</section>"
     )
 }
 
@@ -99,14 +109,19 @@ fn write_distortion(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
     let Some(statistics) = Statistics::of(&data.distortion) else { return Ok(()) };
     writeln!(out, "<section id=\"distortion\">\n<h2>Distortion</h2>")?;
     writeln!(out, "<figure>{}<figcaption>", histogram_svg(&statistics))?;
+    let (cells, cell) = if data.target == TargetShape::Middle {
+        ("parts of source triangles, on each of which the projection is linear", "part")
+    } else {
+        ("cells, interpolated linearly", "cell")
+    };
     write!(
         out,
-        "{} cells, interpolated linearly. 1 means that the cell keeps its shape. Largest finite value {}",
+        "{} {cells}. 1 means that the {cell} keeps its shape. Largest finite value {}",
         grouped(statistics.cells),
         rounded(statistics.largest)
     )?;
     match statistics.collapsed {
-        0 => writeln!(out, "; no cell collapses.</figcaption></figure>")?,
+        0 => writeln!(out, "; no {cell} collapses.</figcaption></figure>")?,
         n => writeln!(
             out,
             "; {} without a finite value: the linear interpolant collapses them, which says nothing against the map itself.</figcaption></figure>",

@@ -6,10 +6,17 @@ use super::histogram::{Statistics, histogram_svg};
 use super::leaves::pair_leaves;
 use super::levels::{fit, level_sets};
 use super::marching::zero_set;
+use super::overlay::{Overlay, overlay, weights_near};
 use super::pack::{Block, Frame, write_base64};
 use super::page::{escape, grouped, rounded};
 use super::simplify::simplify;
-use super::write_report;
+use super::{report_of_shell, write_report};
+use crate::construct::shell::{ShellParams, build};
+use crate::input::SourceMesh;
+use crate::map::Shell;
+use crate::progress::Silent;
+use homeo_core::mesh::SimplicialComplex;
+use homeo_core::number::Rational;
 use std::io::ErrorKind;
 
 /// The unit cube, split into six tetrahedra round its diagonal, `steps` times in each direction.
@@ -55,6 +62,7 @@ fn report(mesh: CellMesh) -> ReportData {
         distortion: vec![1.0; mesh.cells.len()],
         cells: mesh,
         leaves: vec![Leaf { source: vec![[0.0; 3], [1.0; 3]], target: vec![[0.0; 3], [0.5; 3], [1.0; 3]] }],
+        shell: None,
     }
 }
 
@@ -218,6 +226,107 @@ fn the_page_is_complete_and_escapes_what_it_is_given() {
     assert!(page.contains("&lt;6&gt;") && page.contains("MIT License"));
     assert!(!page.contains("src=\"") && !page.contains("@import"));
     assert!(page.trim_end().ends_with("</html>"));
+}
+
+/// A shell round a bumpy torus.
+fn torus_shell(rounds: usize) -> Shell {
+    let (n, m) = (24, 12);
+    let point = |k: u32| {
+        let [s, t] = [(k / m, n), (k % m, m)].map(|(k, of)| std::f64::consts::TAU * f64::from(k) / f64::from(of));
+        let r = 0.3 + 0.05 * (3.0 * s).sin();
+        [(1.0 + r * t.cos()) * s.cos(), (1.0 + r * t.cos()) * s.sin(), r * t.sin()]
+    };
+    let at = |i: u32, j: u32| i % n * m + j % m;
+    let triangles: Vec<[u32; 3]> = (0..n * m)
+        .map(|k| (k / m, k % m))
+        .flat_map(|(i, j)| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]])
+        .collect();
+    let complex = SimplicialComplex::from_indices((n * m) as usize, &triangles).expect("indices");
+    let source = SourceMesh::new((0..n * m).map(point).collect(), complex);
+    let params = ShellParams { rounds, ..ShellParams::default() };
+    build(&source, &params, &Silent).expect("a torus has a shell").0
+}
+
+fn triangles(cells: &CellList) -> Vec<u32> {
+    match cells {
+        CellList::Triangles(cells) => cells.as_flattened().to_vec(),
+        CellList::Tetrahedra(_) => panic!("a surface"),
+    }
+}
+
+#[test]
+fn parts_of_a_shell_cover_source_and_middle_once_and_go_where_the_projection_sends_them() {
+    for rounds in [0, 30] {
+        let shell = torus_shell(rounds);
+        let source: Vec<u32> = shell.source().complex().cells().iter().flatten().map(|v| v.raw()).collect();
+        let middle = area(&shell.parts().middle, shell.parts().prisms.as_flattened());
+        let Overlay { mesh, prisms, distortion } = overlay(&shell);
+        let parts = triangles(&mesh.cells);
+        if rounds == 0 {
+            assert_eq!(parts.len(), source.len(), "every triangle is the middle of its prism");
+            assert!(distortion.iter().all(|ratio| *ratio < 1.0 + 1e-9));
+        }
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
+        assert!(near(area(&mesh.positions, &parts), area(shell.source().positions(), &source)), "rounds {rounds}");
+        assert!(near(area(&mesh.images, &parts), middle), "rounds {rounds}");
+        assert_eq!((prisms.len(), distortion.len()), (parts.len() / 3, parts.len() / 3));
+        let (mut tried, mut in_their_prism) = (0, 0);
+        for (part, &prism) in parts.chunks(3).zip(&prisms).step_by(37) {
+            let centre = |points: &[[f64; 3]]| -> [f64; 3] {
+                std::array::from_fn(|axis| part.iter().map(|&v| points[v as usize][axis]).sum::<f64>() / 3.0)
+            };
+            let (point, expected) = (centre(&mesh.positions), centre(&mesh.images));
+            let image = shell.to_middle(point).expect("in the shell").point;
+            let miss = (0..3).map(|axis| (image[axis] - expected[axis]).abs()).fold(0.0, f64::max);
+            assert!(miss < 1e-9, "{miss}");
+            let exact = point.map(|x| Rational::from_f64(x).expect("finite"));
+            let at = shell.to_middle_exact(&exact).expect("in the shell");
+            let corners = shell.parts().prisms[prism as usize].map(|v| shell.parts().middle[v as usize]);
+            let weights = weights_near(&corners, expected);
+            tried += 1;
+            // The centre of a sliver is rounded across the side of its prism now and then.
+            if at.prism != prism {
+                continue;
+            }
+            in_their_prism += 1;
+            assert!(at.weights.iter().zip(weights).all(|(exact, near)| (exact.to_f64() - near).abs() < 1e-9));
+        }
+        assert!(tried > 10 && 20 * in_their_prism >= 19 * tried, "{in_their_prism} of {tried}");
+    }
+}
+
+#[test]
+fn the_page_of_a_shell_is_complete() {
+    let data = report_of_shell(&torus_shell(30), "torus", "", VerdictWords::default());
+    assert!(!data.leaves.is_empty());
+    let mut page = Vec::new();
+    write_report(&data, &mut page).expect("a vector takes all");
+    let page = String::from_utf8(page).expect("the page is UTF-8");
+    assert!(page.contains("right the middle surface") && page.contains("parts of source triangles"));
+    for (what, count) in [("\"coordinate\":\"bottom\"", 1), ("\"coordinate\":\"top\"", 1), ("\"weights\":{", 1)] {
+        assert_eq!(page.matches(what).count(), count, "{what}");
+    }
+}
+
+#[test]
+fn contradictory_shells_are_refused() {
+    let broken: [fn(&mut ReportData); 6] = [
+        |data| data.target = TargetShape::Disk,
+        |data| data.shell = None,
+        |data| data.shell.iter_mut().for_each(|shell| shell.prism_of_cell[0] = u32::MAX),
+        |data| data.shell.iter_mut().for_each(|shell| shell.prism_of_cell.truncate(1)),
+        |data| data.shell.iter_mut().for_each(|shell| shell.parts.prisms[0][2] = u32::MAX),
+        |data| data.shell.iter_mut().for_each(|shell| shell.parts.top[0][2] = f64::NAN),
+    ];
+    let whole = report_of_shell(&torus_shell(0), "torus", "", VerdictWords::default());
+    for (case, spoil) in broken.into_iter().enumerate() {
+        let mut data = whole.clone();
+        spoil(&mut data);
+        let mut page = Vec::new();
+        let error = write_report(&data, &mut page).expect_err("the data contradict themselves");
+        assert_eq!(error.kind(), ErrorKind::InvalidInput, "case {case}");
+        assert!(page.is_empty());
+    }
 }
 
 #[test]

@@ -82,11 +82,11 @@ impl Piece {
 /// above it.
 pub(super) fn pieces_in(shell: &Shell, surface: &ShellSurface, prism: u32) -> Vec<Piece> {
     let slabs = [2 * prism as usize, 2 * prism as usize + 1];
-    let points: Vec<Point> = slabs.iter().flat_map(|&slab| shell.tetrahedra_of_slab(slab)).flatten().collect();
+    let points: Vec<Point> = slabs.iter().flat_map(|&slab| shell.slab_cells(slab)).flat_map(|(_, cell)| cell).collect();
     let near = surface.near(&points);
     let mut pieces = Vec::new();
     for slab in slabs {
-        for (cell, columns) in shell.tetrahedra_of_slab(slab).into_iter().zip(shell.columns_of_tetrahedra(prism)) {
+        for (columns, cell) in shell.slab_cells(slab) {
             let whole = orient3d(cell[0], cell[1], cell[2], cell[3]);
             if whole == Sign::Zero {
                 continue; // a pinched column

@@ -40,11 +40,8 @@ pub(super) type Fibre<T> = Vec<[T; 3]>;
 impl Shell {
     /// The prism, weights and height of a point that lies in the box.
     pub(super) fn locate<T: Scalar>(&self, point: &[T; 3], region: &Aabb) -> Result<ShellPoint<T>, Stop> {
-        let mut candidates = Vec::new();
-        self.slabs.query_box(region, |slab| candidates.push(slab));
-        candidates.sort_unstable();
         let mut found: Option<ShellPoint<T>> = None;
-        for slab in candidates {
+        for slab in self.slabs_near(region) {
             let Some(here) = self.locate_in_slab(slab, point)? else { continue };
             match &found {
                 None => found = Some(here),
@@ -206,15 +203,10 @@ impl Shell {
         ]
     }
 
-    /// On which column of its prism each corner of the tetrahedra lies.
-    pub(crate) fn columns_of_tetrahedra(&self, prism: u32) -> [[usize; 4]; 3] {
-        self.tetrahedra(prism).map(|cell| cell.map(|(column, _)| column))
-    }
-
-    /// The tetrahedra of a slab, as points.
-    pub(crate) fn tetrahedra_of_slab(&self, slab: usize) -> [[[f64; 3]; 4]; 3] {
+    /// The tetrahedra of a slab: for each corner the position of its column in the prism, and the corners.
+    pub(crate) fn slab_cells(&self, slab: usize) -> [([usize; 4], [[f64; 3]; 4]); 3] {
         let columns = self.parts.prisms[slab / 2];
         let point = |(k, is_high): Corner| self.level(columns[k], slab % 2 + usize::from(is_high));
-        self.tetrahedra((slab / 2) as u32).map(|cell| cell.map(point))
+        self.tetrahedra((slab / 2) as u32).map(|cell| (cell.map(|(column, _)| column), cell.map(point)))
     }
 }

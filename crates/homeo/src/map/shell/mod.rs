@@ -29,6 +29,14 @@ pub struct ShellParts {
     pub prisms: Vec<[u32; 3]>,
 }
 
+impl ShellParts {
+    /// Whether a column has no length.
+    pub(crate) fn is_pinched(&self, column: u32) -> bool {
+        let column = column as usize;
+        self.bottom[column] == self.middle[column] && self.middle[column] == self.top[column]
+    }
+}
+
 /// A point of a shell: a prism, barycentric weights in its middle triangle (in the prism's order, adding up to 1), and
 /// a height from -1 (bottom) to 1 (top).
 #[derive(Clone, Debug, PartialEq)]
@@ -264,11 +272,19 @@ impl Shell {
         }
     }
 
+    /// The slabs whose boxes meet a box: `2 * prism` is a lower one, `2 * prism + 1` an upper one.
+    pub(crate) fn slabs_near(&self, region: &Aabb) -> Vec<usize> {
+        let mut slabs = Vec::new();
+        self.slabs.query_box(region, |slab| slabs.push(slab));
+        slabs.sort_unstable();
+        slabs
+    }
+
     /// Whether a point lies in the shell, exactly: in one prism or in several.
     pub fn is_inside(&self, point: Point) -> bool {
         let mut is_inside = false;
         self.slabs.query_point(point, |slab| {
-            is_inside = is_inside || self.tetrahedra_of_slab(slab).into_iter().any(|cell| contains(cell, point));
+            is_inside = is_inside || self.slab_cells(slab).into_iter().any(|(_, cell)| contains(cell, point));
         });
         is_inside
     }
@@ -318,8 +334,7 @@ impl Shell {
     }
 
     fn is_pinched(&self, column: u32) -> bool {
-        let [bottom, middle, top] = [0, 1, 2].map(|level| self.level(column, level));
-        bottom == middle && middle == top
+        self.parts.is_pinched(column)
     }
 }
 
