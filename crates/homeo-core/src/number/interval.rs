@@ -23,10 +23,11 @@ impl Interval {
     /// All numbers: nothing is known.
     pub const WHOLE: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
-    /// An interval round an exact number.
+    /// An interval round an exact number; a point where the number is a double.
     pub fn around(exact: &Rational) -> Self {
         let near = exact.to_f64();
-        Self::outward(near, near)
+        let is_exact = Rational::from_f64(near).is_some_and(|there| there == *exact);
+        if is_exact { Self::from_f64(near) } else { Self::outward(near, near) }
     }
 
     /// The least number in it.
