@@ -35,11 +35,37 @@ enum Rule {
     Difference(Lazy, Lazy),
     Product(Lazy, Lazy),
     Quotient(Lazy, Lazy),
+    Formula(Formula),
+}
+
+/// A formula in rationals.
+struct Formula(Box<dyn Fn() -> Rational + Send + Sync>);
+
+impl std::fmt::Debug for Formula {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Formula")
+    }
 }
 
 impl Lazy {
     fn new(near: Interval, rule: Rule) -> Self {
         Self(Arc::new(Node { near, rule, exact: OnceLock::new() }))
+    }
+
+    /// The value of a formula: what it gives in intervals, and how to compute it in rationals. Cheaper than to compute with
+    /// lazy numbers, step by step. That both are the same formula is up to the caller: write it once, for any [`Scalar`].
+    ///
+    /// ```
+    /// use homeo_core::number::{Interval, Lazy, Rational, Scalar};
+    /// fn product<T: Scalar>([a, b]: [f64; 2]) -> T {
+    ///     T::from_f64(a).times(&T::from_f64(b))
+    /// }
+    /// let pair = [0.1, 0.3];
+    /// let lazy = Lazy::of_formula(product::<Interval>(pair), move || product::<Rational>(pair));
+    /// assert_eq!(lazy, Lazy::from_f64(0.1).times(&Lazy::from_f64(0.3)));
+    /// ```
+    pub fn of_formula(near: Interval, exact: impl Fn() -> Rational + Send + Sync + 'static) -> Self {
+        Self::new(near, Rule::Formula(Formula(Box::new(exact))))
     }
 
     /// An interval round the number; a point where the exact value has been computed and is a double.
@@ -59,6 +85,7 @@ impl Lazy {
             Rule::Difference(a, b) => a.exact() - b.exact(),
             Rule::Product(a, b) => a.exact() * b.exact(),
             Rule::Quotient(a, b) => a.exact() / b.exact(),
+            Rule::Formula(formula) => formula.0(),
         })
     }
 
@@ -73,7 +100,7 @@ impl Lazy {
     }
 
     /// Whether it is known, without any work, to be this double.
-    fn is_plainly(&self, value: f64) -> bool {
+    pub fn is_plainly(&self, value: f64) -> bool {
         self.0.near.low() == value && self.0.near.high() == value
     }
 }

@@ -15,27 +15,16 @@ mod pieces;
 mod polygon;
 mod shares;
 
-use homeo_core::number::Lazy;
+use homeo_core::number::{Lazy, Scalar};
 use rayon::prelude::*;
 
 use crate::map::Shell;
 use crate::progress::Progress;
 
 use pieces::{Piece, Role, pieces_in};
-use polygon::doubled_area;
+use polygon::{Place, doubled_area, turn};
 
 pub use shares::{Share, shares};
-
-/// A corner of a cell: the same point on the middle surface, on the source and on the section.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CellCorner {
-    /// Weights of the prism's columns.
-    pub on_middle: [Lazy; 3],
-    /// Weights in the source's triangle.
-    pub on_source: [Lazy; 3],
-    /// Weights in the section's triangle.
-    pub on_section: [Lazy; 3],
-}
 
 /// On which edges a side of a cell lies: the corner of the triangle that is opposite to the edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,14 +44,49 @@ pub struct Cell {
     pub source: u32,
     /// The triangle of the section; the prism where the shell has no other section.
     pub section: u32,
-    /// At least three corners, counter-clockwise; three of them may lie on a line.
-    pub corners: Vec<CellCorner>,
+    /// At least three corners, counter-clockwise; three of them may lie on a line. Each is given by the weights of the
+    /// prism's columns.
+    pub corners: Vec<[Lazy; 3]>,
     /// From each corner to the next one.
     pub sides: Vec<CellSide>,
+    frame_of_source: [[Lazy; 3]; 3],
+    frame_of_section: [[Lazy; 3]; 3],
+}
+
+impl Cell {
+    /// The weights in the source's triangle of a place over the prism.
+    pub fn on_source(&self, place: &[Lazy; 3]) -> [Lazy; 3] {
+        weights_in(&self.frame_of_source, place)
+    }
+
+    /// The weights in the section's triangle of a place over the prism.
+    pub fn on_section(&self, place: &[Lazy; 3]) -> [Lazy; 3] {
+        weights_in(&self.frame_of_section, place)
+    }
+
     /// Its area as a part of that of its triangle of the source.
-    pub share_of_source: Lazy,
+    pub fn share_of_source(&self) -> Lazy {
+        self.area().divide(&whole(&self.frame_of_source))
+    }
+
     /// Its area as a part of that of its triangle of the section.
-    pub share_of_section: Lazy,
+    pub fn share_of_section(&self) -> Lazy {
+        self.area().divide(&whole(&self.frame_of_section))
+    }
+
+    fn area(&self) -> Lazy {
+        doubled_area(&self.corners.iter().collect::<Vec<_>>())
+    }
+}
+
+fn whole([a, b, c]: &[Place; 3]) -> Lazy {
+    turn(a, b, c)
+}
+
+/// The weights of the corners of a triangle at a place.
+fn weights_in([a, b, c]: &[Place; 3], place: &Place) -> [Lazy; 3] {
+    let whole = turn(a, b, c);
+    [turn(b, c, place), turn(c, a, place), turn(a, b, place)].map(|part| part.divide(&whole))
 }
 
 /// Prisms that are worked on before their cells are handed over.
@@ -110,31 +134,23 @@ fn cells_of(shell: &Shell, prism: u32) -> Vec<Cell> {
         for other in of_section.iter().filter(|other| piece.hull.meets(&other.hull)) {
             let corners = polygon::intersection(&piece.corners, &other.corners);
             if !corners.is_empty() {
-                cells.push(joined(prism, piece, other, &corners));
+                cells.push(joined(prism, piece, other, corners));
             }
         }
     }
     cells
 }
 
-fn joined(prism: u32, piece: &Piece, other: &Piece, corners: &[polygon::Corner<2>]) -> Cell {
-    use homeo_core::number::Scalar;
-    let on_middle = |[a, b]: &[Lazy; 2]| [Lazy::from_f64(1.0).minus(a).minus(b), a.clone(), b.clone()];
-    let corner = |corner: &polygon::Corner<2>| CellCorner {
-        on_middle: on_middle(&corner.at),
-        on_source: piece.weights_at(&corner.at),
-        on_section: other.weights_at(&corner.at),
-    };
+fn joined(prism: u32, piece: &Piece, other: &Piece, corners: Vec<polygon::Corner<3>>) -> Cell {
     let side =
-        |corner: &polygon::Corner<2>| CellSide { of_source: corner.side.of_source, of_section: corner.side.of_section };
-    let area = doubled_area(&corners.iter().map(|corner| &corner.at).collect::<Vec<_>>());
+        |corner: &polygon::Corner<3>| CellSide { of_source: corner.side.of_source, of_section: corner.side.of_section };
     Cell {
         prism,
         source: piece.triangle,
         section: other.triangle,
-        share_of_source: area.divide(&piece.whole()),
-        share_of_section: area.divide(&other.whole()),
         sides: corners.iter().map(side).collect(),
-        corners: corners.iter().map(corner).collect(),
+        corners: corners.into_iter().map(|corner| corner.at).collect(),
+        frame_of_source: piece.frame.clone(),
+        frame_of_section: other.frame.clone(),
     }
 }

@@ -1,21 +1,18 @@
 //! How the triangles of a section lie over one middle triangle.
 
-use homeo_core::number::{Lazy, Scalar};
+use homeo_core::number::{Interval, Lazy, Rational, Scalar};
 use homeo_core::predicate::{Sign, orient3d};
 use homeo_core::spatial::Aabb;
 
-use super::polygon::{Corner, Edges, clipped, doubled_area, turn};
+use super::polygon::{Corner, Edges, Place, clipped};
 use crate::map::{Shell, ShellSurface};
 
 type Point = [f64; 3];
 
-/// A place in a middle triangle: the weights of the prism's second and third column.
-pub(super) type Place = [Lazy; 2];
-
 /// The image of the part of a triangle that lies in one tetrahedron: a convex polygon, counter-clockwise.
 pub(super) struct Piece {
     pub triangle: u32,
-    pub corners: Vec<Corner<2>>,
+    pub corners: Vec<Corner<3>>,
     pub hull: Aabb,
     /// Where the triangle's corners would be if all of it lay in the tetrahedron.
     pub frame: [Place; 3],
@@ -39,10 +36,10 @@ impl Role {
 }
 
 impl Piece {
-    fn new(triangle: u32, corners: Vec<Corner<2>>, frame: [Place; 3]) -> Self {
+    fn new(triangle: u32, corners: Vec<Corner<3>>, frame: [Place; 3]) -> Self {
         let ends = corners.iter().flat_map(|corner| {
-            let [x, y] = corner.at.each_ref().map(Lazy::interval);
-            [[x.low(), y.low(), 0.0], [x.high(), y.high(), 0.0]]
+            let ends = corner.at.each_ref().map(Lazy::interval);
+            [ends.map(|end| end.low()), ends.map(|end| end.high())]
         });
         Self { triangle, hull: Aabb::of(&ends.collect::<Vec<_>>()), corners, frame }
     }
@@ -50,21 +47,9 @@ impl Piece {
     /// A triangle of the middle surface itself.
     pub fn whole_prism(prism: u32) -> Self {
         let frame: [Place; 3] =
-            std::array::from_fn(|k| [1, 2].map(|column| Lazy::from_f64(if k == column { 1.0 } else { 0.0 })));
-        let corner = |k: usize| Corner { at: frame[k].clone(), side: Role::Section.edge((k + 2) % 3) };
+            std::array::from_fn(|k| [0, 1, 2].map(|column| Lazy::from_f64(if k == column { 1.0 } else { 0.0 })));
+        let corner = |k: usize| Corner { at: frame[k].clone(), side: Role::Section.edge((k + 2) % 3), is_new: false };
         Self::new(prism, (0..3).map(corner).collect(), frame.clone())
-    }
-
-    /// Twice the area that the whole triangle would have there: the unit of shares.
-    pub fn whole(&self) -> Lazy {
-        let [a, b, c] = &self.frame;
-        doubled_area(&[a, b, c])
-    }
-
-    /// The weights in the piece's triangle of a place.
-    pub fn weights_at(&self, place: &Place) -> [Lazy; 3] {
-        let ([a, b, c], whole) = (&self.frame, self.whole());
-        [turn(b, c, place), turn(c, a, place), turn(a, b, place)].map(|part| part.divide(&whole))
     }
 }
 
@@ -107,14 +92,17 @@ impl Tetrahedron {
         }
         let weights: [[Lazy; 4]; 3] = std::array::from_fn(|k| self.weights(triangle[k], signs.map(|face| face[k])));
         let frame = weights.each_ref().map(|weights| self.place(weights));
-        let corner = |k: usize| Corner { at: weights[k].clone(), side: self.role.edge((k + 2) % 3) };
+        let corner = |k: usize| Corner { at: weights[k].clone(), side: self.role.edge((k + 2) % 3), is_new: false };
         let mut rest: Vec<Corner<4>> = (0..3).map(corner).collect();
         for face in (0..4).filter(|&face| signs[face].contains(&Sign::Negative)) {
             let heights: Vec<Lazy> = rest.iter().map(|corner| corner.at[face].clone()).collect();
             let signs: Vec<Sign> = heights.iter().map(Lazy::certain_sign).collect();
             rest = clipped(rest, &signs, &heights, Edges::default())?;
+            // What was cut off ends where this weight is zero, which is worth knowing without computing it.
+            rest.iter_mut().filter(|corner| corner.is_new).for_each(|corner| corner.at[face] = Lazy::from_f64(0.0));
         }
-        let corners = rest.into_iter().map(|corner| Corner { at: self.place(&corner.at), side: corner.side });
+        let corners =
+            rest.into_iter().map(|corner| Corner { at: self.place(&corner.at), side: corner.side, is_new: false });
         Some(Piece::new(number, corners.collect(), frame))
     }
 
@@ -124,7 +112,7 @@ impl Tetrahedron {
             let parts = (0..4).filter(|&i| self.columns[i] == column).map(|i| &weights[i]);
             parts.fold(Lazy::from_f64(0.0), |sum, part| sum.plus(part))
         };
-        [on(1), on(2)]
+        [on(0), on(1), on(2)]
     }
 
     /// On which side of a face, opposite to the corner of that number, a point lies: positive inside.
@@ -145,21 +133,24 @@ impl Tetrahedron {
 
     /// The barycentric weights of a point, inside or not, of which the signs are known.
     fn weights(&self, point: Point, signs: [Sign; 4]) -> [Lazy; 4] {
-        let whole = volume(self.corners);
-        std::array::from_fn(|i| {
-            if signs[i] == Sign::Zero {
-                return Lazy::from_f64(0.0);
-            }
-            let mut moved = self.corners;
-            moved[i] = point;
-            volume(moved).divide(&whole)
+        let corners = self.corners;
+        std::array::from_fn(|i| match signs[i] {
+            Sign::Zero => Lazy::from_f64(0.0),
+            _ => Lazy::of_formula(weight::<Interval>(corners, i, point), move || weight::<Rational>(corners, i, point)),
         })
     }
 }
 
+/// The barycentric weight of a point at a corner of a tetrahedron.
+fn weight<T: Scalar>(corners: [Point; 4], i: usize, point: Point) -> T {
+    let mut moved = corners;
+    moved[i] = point;
+    volume::<T>(moved).divide(&volume(corners))
+}
+
 /// Six times the volume of a tetrahedron.
-fn volume([a, b, c, d]: [Point; 4]) -> Lazy {
-    let step = |p: Point| -> [Lazy; 3] { std::array::from_fn(|i| Lazy::from_f64(p[i]).minus(&Lazy::from_f64(a[i]))) };
+fn volume<T: Scalar>([a, b, c, d]: [Point; 4]) -> T {
+    let step = |p: Point| -> [T; 3] { std::array::from_fn(|i| T::from_f64(p[i]).minus(&T::from_f64(a[i]))) };
     let [u, v, w] = [step(b), step(c), step(d)];
     let minor = |y: usize, z: usize| v[y].times(&w[z]).minus(&v[z].times(&w[y]));
     u[0].times(&minor(1, 2)).plus(&u[1].times(&minor(2, 0))).plus(&u[2].times(&minor(0, 1)))

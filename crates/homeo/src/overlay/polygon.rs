@@ -1,6 +1,6 @@
 //! Convex polygons, exactly.
 
-use homeo_core::number::{Lazy, Scalar};
+use homeo_core::number::{Interval, Lazy, Rational, Scalar};
 use homeo_core::predicate::Sign;
 
 /// On which edges of triangles a side of a polygon lies, by the corners opposite to them.
@@ -24,22 +24,41 @@ impl Edges {
 pub(super) struct Corner<const N: usize> {
     pub at: [Lazy; N],
     pub side: Edges,
+    /// Whether the last cut made it.
+    pub is_new: bool,
 }
 
-/// Twice the area of the triangle of three points of the plane.
-pub(super) fn turn(a: &[Lazy; 2], b: &[Lazy; 2], p: &[Lazy; 2]) -> Lazy {
-    let (u, v) = ([b[0].minus(&a[0]), b[1].minus(&a[1])], [p[0].minus(&a[0]), p[1].minus(&a[1])]);
-    u[0].times(&v[1]).minus(&u[1].times(&v[0]))
+/// A place in a middle triangle: the weights of the prism's columns.
+pub(super) type Place = [Lazy; 3];
+
+/// Twice the area of the triangle of three places, that of the whole middle triangle being 1.
+pub(super) fn turn(a: &Place, b: &Place, c: &Place) -> Lazy {
+    formula([a, b, c].map(Clone::clone), determinant::<Interval>, determinant::<Rational>)
+}
+
+fn determinant<T: Scalar>([a, b, c]: &[[T; 3]; 3]) -> T {
+    let minor = |y: usize, z: usize| b[y].times(&c[z]).minus(&b[z].times(&c[y]));
+    a[0].times(&minor(1, 2)).plus(&a[1].times(&minor(2, 0))).plus(&a[2].times(&minor(0, 1)))
+}
+
+/// The value of a formula, for lazy numbers.
+fn formula<const M: usize, const N: usize>(
+    numbers: [[Lazy; N]; M],
+    near: fn(&[[Interval; N]; M]) -> Interval,
+    exact: fn(&[[Rational; N]; M]) -> Rational,
+) -> Lazy {
+    let around = near(&numbers.each_ref().map(|row| row.each_ref().map(Lazy::interval)));
+    Lazy::of_formula(around, move || exact(&numbers.each_ref().map(|row| row.each_ref().map(|x| x.exact().clone()))))
 }
 
 /// Twice the area of a convex polygon.
-pub(super) fn doubled_area(corners: &[&[Lazy; 2]]) -> Lazy {
+pub(super) fn doubled_area(corners: &[&Place]) -> Lazy {
     let fan = corners.windows(2).skip(1).map(|pair| turn(corners[0], pair[0], pair[1]));
     fan.fold(Lazy::from_f64(0.0), |sum, area| sum.plus(&area))
 }
 
 /// The part of a convex polygon in another one, both counter-clockwise; empty without an area.
-pub(super) fn intersection(polygon: &[Corner<2>], other: &[Corner<2>]) -> Vec<Corner<2>> {
+pub(super) fn intersection(polygon: &[Corner<3>], other: &[Corner<3>]) -> Vec<Corner<3>> {
     let mut rest = polygon.to_vec();
     for (k, from) in other.iter().enumerate() {
         let to = &other[(k + 1) % other.len()].at;
@@ -63,21 +82,22 @@ pub(super) fn clipped<const N: usize>(
     if !signs.contains(&Positive) {
         return None;
     }
+    let old = |corner: &Corner<N>| Corner { is_new: false, ..corner.clone() };
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (k, corner) in corners.iter().enumerate() {
         let next = (k + 1) % corners.len();
         let crossing = || between([corner, &corners[next]], [&heights[k], &heights[next]]);
         match (signs[k], signs[next]) {
             // The side goes on along the line.
-            (Zero, Zero) => kept.push(Corner { side: corner.side.and(line), ..corner.clone() }),
-            (Zero, Negative) => kept.push(Corner { side: line, ..corner.clone() }),
+            (Zero, Zero) => kept.push(Corner { side: corner.side.and(line), ..old(corner) }),
+            (Zero, Negative) => kept.push(Corner { side: line, ..old(corner) }),
             (Positive, Negative) => {
-                kept.push(corner.clone());
-                kept.push(Corner { at: crossing(), side: line });
+                kept.push(old(corner));
+                kept.push(Corner { at: crossing(), side: line, is_new: true });
             }
-            (Negative, Positive) => kept.push(Corner { at: crossing(), side: corner.side }),
+            (Negative, Positive) => kept.push(Corner { at: crossing(), side: corner.side, is_new: true }),
             (Negative, _) => {}
-            _ => kept.push(corner.clone()),
+            _ => kept.push(old(corner)),
         }
     }
     (kept.len() >= 3).then_some(kept)
@@ -85,6 +105,16 @@ pub(super) fn clipped<const N: usize>(
 
 /// The point between two corners where the height, linear, is zero.
 fn between<const N: usize>([a, b]: [&Corner<N>; 2], heights: [&Lazy; 2]) -> [Lazy; N] {
-    let share = heights[0].divide(&heights[0].minus(heights[1]));
-    std::array::from_fn(|i| a.at[i].plus(&share.times(&b.at[i].minus(&a.at[i]))))
+    std::array::from_fn(|i| {
+        let numbers = [[&a.at[i], heights[0]].map(Clone::clone), [&b.at[i], heights[1]].map(Clone::clone)];
+        if numbers.iter().all(|[at, _]| at.is_plainly(0.0)) {
+            return Lazy::from_f64(0.0);
+        }
+        formula(numbers, at_zero::<Interval>, at_zero::<Rational>)
+    })
+}
+
+/// The value where the height is zero, given value and height at two points.
+fn at_zero<T: Scalar>([[a, height_a], [b, height_b]]: &[[T; 2]; 2]) -> T {
+    a.plus(&height_a.divide(&height_a.minus(height_b)).times(&b.minus(a)))
 }

@@ -32,7 +32,7 @@ pub fn shares(shell: &Shell, progress: &(dyn Progress + Sync)) -> Option<Vec<Sha
     let is_complete = for_each_cell(shell, progress, |cell| {
         let none = || [0.0; 2].map(Lazy::from_f64);
         let [a, b] = found.entry([cell.section, cell.source]).or_insert_with(none);
-        (*a, *b) = (a.plus(&cell.share_of_source), b.plus(&cell.share_of_section));
+        (*a, *b) = (a.plus(&cell.share_of_source()), b.plus(&cell.share_of_section()));
     });
     let share = |([section, source], [of_source, of_section]): ([u32; 2], [Lazy; 2])| Share {
         source,

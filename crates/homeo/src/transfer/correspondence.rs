@@ -65,7 +65,7 @@ impl<'s> Correspondence<'s> {
         let is_complete = for_each_cell(shell, progress, |cell| {
             let triangle = cell.section as usize;
             let parts = shares[triangle].entry(cell.source).or_insert([0.0; 2]);
-            *parts = [parts[0] + cell.share_of_source.near(), parts[1] + cell.share_of_section.near()];
+            *parts = [parts[0] + cell.share_of_source().near(), parts[1] + cell.share_of_section().near()];
             crossed[triangle].extend(sides_inside(&cell));
         });
         if !is_complete {

@@ -43,25 +43,26 @@ fn check_corners(shell: &Shell, cell: &Cell) {
     for (corner, next) in cell.corners.iter().zip(cell.corners.iter().cycle().skip(1)) {
         let side = &cell.sides[cell.corners.iter().position(|other| other == corner).expect("it is one of them")];
         for (edge, ends) in [
-            (side.of_source, [&corner.on_source, &next.on_source]),
-            (side.of_section, [&corner.on_section, &next.on_section]),
+            (side.of_source, [corner, next].map(|end| cell.on_source(end))),
+            (side.of_section, [corner, next].map(|end| cell.on_section(end))),
         ] {
             let on_edge: Vec<u8> = (0..3).filter(|&k| ends.iter().all(|end| end[usize::from(k)].is_zero())).collect();
             assert_eq!(edge.into_iter().collect::<Vec<u8>>(), on_edge, "the edge on which a side lies");
         }
+        let (on_source, on_section) = (cell.on_source(corner), cell.on_section(corner));
         let source = shell.source();
         let triangle = source.complex().cells()[cell.source as usize];
         let point: [Rational; 3] = std::array::from_fn(|axis| {
             let exact = |k: usize| crate::points::exact(source.positions()[triangle[k].index()])[axis].clone();
-            (0..3).map(|k| corner.on_source[k].exact() * &exact(k)).sum()
+            (0..3).map(|k| on_source[k].exact() * &exact(k)).sum()
         });
         let at = shell.project_exact(&point).expect("on the source");
         if at.prism == cell.prism {
-            assert_eq!(at.weights.each_ref(), corner.on_middle.each_ref().map(Lazy::exact), "on the middle surface");
+            assert_eq!(at.weights.each_ref(), corner.each_ref().map(Lazy::exact), "on the middle surface");
         }
         let image = shell.to_section_exact(&at).expect("on the section");
         if image.triangle == cell.section {
-            assert_eq!(image.weights.each_ref(), corner.on_section.each_ref().map(Lazy::exact), "on the section");
+            assert_eq!(image.weights.each_ref(), on_section.each_ref().map(Lazy::exact), "on the section");
         }
     }
 }
