@@ -15,6 +15,9 @@ use crate::text::Lines;
 /// # Errors
 /// When a density is none, or the run was stopped.
 pub fn moved(session: &Session, shell: &Shell, file: &MeshFile, densities: &[String]) -> Result<Vec<Transferred>> {
+    if file.attributes.is_empty() && densities.is_empty() {
+        return Ok(Vec::new());
+    }
     session.stage("transfer");
     let moved = transfer(shell, &file.attributes, densities, session).map_err(|error| match error {
         TransferError::NoDensity(_) => Failure::input("no-density", error.to_string()),

@@ -31,6 +31,12 @@ impl Interval {
         if is_exact { Self::from_f64(near) } else { Self::outward(near, near) }
     }
 
+    /// The smallest interval that holds all numbers of both.
+    #[must_use]
+    pub fn hull_with(&self, other: &Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
     /// The least number in it.
     pub fn low(&self) -> f64 {
         self.low
@@ -137,8 +143,8 @@ impl Scalar for Interval {
         }
     }
 
-    fn near(&self) -> f64 {
-        self.middle_and_radius().0
+    fn enclosure(&self) -> Interval {
+        *self
     }
 }
 

@@ -159,8 +159,8 @@ impl Scalar for Lazy {
         Some(self.certain_sign())
     }
 
-    fn near(&self) -> f64 {
-        self.interval().near()
+    fn enclosure(&self) -> Interval {
+        self.interval()
     }
 }
 

@@ -64,7 +64,12 @@ pub(super) fn pieces_in(shell: &Shell, surface: &ShellSurface, role: Role, prism
             continue; // a pinched column
         }
         let body = Tetrahedron { corners, columns, is_reversed: whole == Sign::Negative, role };
-        pieces.extend(surface.near(&corners).into_iter().filter_map(|t| body.piece_of(t, surface.corners(t))));
+        pieces.extend(
+            surface
+                .near(&corners.map(|p| p.map(Interval::from_f64)))
+                .into_iter()
+                .filter_map(|t| body.piece_of(t, surface.corners(t))),
+        );
     }
     pieces
 }
