@@ -8,6 +8,7 @@ use homeo_core::predicate::Sign;
 use homeo_core::spatial::Aabb;
 
 use super::space::{Undecided, combination, crossing, point_of, possible_crossing, sum, weights_in, zero};
+use super::surface::hull;
 use super::{Shell, ShellEvaluationError, ShellPoint, ShellSurface, SurfacePoint};
 
 /// Why there is no answer.
@@ -153,10 +154,12 @@ impl Shell {
                 .at_vertex(&candidates, pinched.each_ref().map(T::near), pinched)
                 .ok_or(ShellEvaluationError::Outside.into());
         }
+        let boxes: Vec<Aabb> = line.windows(2).map(hull).collect();
         let mut is_open = false;
         for triangle in candidates {
+            let place = Aabb::of(&surface.corners(triangle));
             let corners = surface.corners(triangle).map(point_of);
-            for ends in line.windows(2) {
+            for (ends, _) in line.windows(2).zip(&boxes).filter(|(_, region)| region.meets(&place)) {
                 match crossing([&ends[0], &ends[1]], &corners) {
                     Ok(None) => {}
                     Ok(Some(weights)) => {
@@ -174,20 +177,22 @@ impl Shell {
     /// An enclosure of the point of a section on a pillar line, also where it is open which of several triangles has it: the
     /// certificate says that the line meets the section once. `None` where nothing good is known.
     pub(super) fn enclose(surface: &ShellSurface, line: &Fibre<Interval>) -> Option<[Interval; 3]> {
-        let mut hull: Option<[Interval; 3]> = None;
+        let boxes: Vec<Aabb> = line.windows(2).map(hull).collect();
+        let mut met: Option<[Interval; 3]> = None;
         for triangle in surface.near(line) {
+            let place = Aabb::of(&surface.corners(triangle));
             let corners = surface.corners(triangle).map(point_of);
-            for ends in line.windows(2) {
+            for (ends, _) in line.windows(2).zip(&boxes).filter(|(_, region)| region.meets(&place)) {
                 if let Some(weights) = possible_crossing([&ends[0], &ends[1]], &corners).ok()? {
                     let point = combination(&weights, &corners);
-                    hull = Some(match hull {
+                    met = Some(match met {
                         None => point,
                         Some(known) => std::array::from_fn(|axis| known[axis].hull_with(&point[axis])),
                     });
                 }
             }
         }
-        hull
+        met
     }
 
     /// The positions, in a prism, of its columns in ascending order of their numbers.

@@ -97,7 +97,7 @@ pub struct Shell {
 }
 
 /// Part of the shell's size.
-const ACCURACY: f64 = 1e-12;
+const ACCURACY: f64 = 1e-10;
 
 impl Shell {
     /// Joins the data of a shell. What they must satisfy is checked by the certificate, not here.
