@@ -68,8 +68,13 @@ impl Surface {
                 if walls.iter().any(|wall| is_outside(*wall, triangle)) {
                     continue;
                 }
+                // Mostly one of the first two will do, and spares slow exact signs.
+                let is_fine = prism.is_clearly_crossed(slab, triangle);
+                if !is_fine && prism.is_beside(slab, triangle) {
+                    continue;
+                }
                 is_inside = true;
-                if !prism.is_crossed(slab, triangle) && prism.shares_area(slab, triangle) {
+                if !is_fine && !prism.is_crossed(slab, triangle) && prism.shares_area(slab, triangle) {
                     return Err((Failure::Crossing, slab));
                 }
             }
