@@ -15,16 +15,26 @@ type Point = [f64; 3];
 /// assert_eq!(crossing_sign(floor, [[5.0, 5.0, 7.0], [9.0, 9.0, 8.0]]), Sign::Positive);
 /// assert_eq!(crossing_sign(floor, [[5.0, 5.0, 7.0], [9.0, 9.0, 7.0]]), Sign::Zero);
 /// ```
-pub fn crossing_sign([a, b, c]: [Point; 3], [from, to]: [Point; 2]) -> Sign {
+pub fn crossing_sign(triangle: [Point; 3], segment: [Point; 2]) -> Sign {
+    let [a, b, c] = triangle;
+    quick_crossing_sign(triangle, segment).unwrap_or_else(|| exact_sign([[a, b], [a, c], segment]))
+}
+
+/// The same where floating point can tell; `None` where only exact arithmetic can, as always for zero.
+///
+/// ```
+/// use homeo_core::predicate::{Sign, quick_crossing_sign};
+/// let floor = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// assert_eq!(quick_crossing_sign(floor, [[5.0, 5.0, 7.0], [9.0, 9.0, 8.0]]), Some(Sign::Positive));
+/// assert_eq!(quick_crossing_sign(floor, [[5.0, 5.0, 7.0], [9.0, 9.0, 7.0]]), None);
+/// ```
+pub fn quick_crossing_sign([a, b, c]: [Point; 3], [from, to]: [Point; 2]) -> Option<Sign> {
     let step = |p: Point, q: Point| [0, 1, 2].map(|axis| q[axis] - p[axis]);
     let (u, v, w) = (step(a, b), step(a, c), step(from, to));
     let [terms, size] = determinant_and_size(u, v, w);
     // Each difference has half an ulp of relative error, each product of three another two, the sum of six five:
     // together less than 8 ulps of the sum of the absolute values.
-    if terms.abs() > 8.0 * f64::EPSILON * size && size > 1e-250 && size < 1e250 {
-        return Sign::of(terms);
-    }
-    exact_sign([[a, b], [a, c], [from, to]])
+    (terms.abs() > 8.0 * f64::EPSILON * size && size > 1e-250 && size < 1e250).then(|| Sign::of(terms))
 }
 
 /// The determinant in floating point, and the sum of the absolute values of its terms.

@@ -16,7 +16,7 @@ pub use contact::{
     faithful_projection, segment_meets_triangle, segments_meet, triangles_meet, triangles_meet_beyond_edge,
     triangles_meet_beyond_vertex,
 };
-pub use crossing::{crossing_sign, share_area};
+pub use crossing::{crossing_sign, quick_crossing_sign, share_area};
 pub use orientation::{is_degenerate_triangle, orient2d, orient3d};
 
 /// The exact sign of a quantity.

@@ -68,8 +68,13 @@ impl Surface {
                 if walls.iter().any(|wall| is_outside(*wall, triangle)) {
                     continue;
                 }
+                // Mostly one of the first two will do, and spares slow exact signs.
+                let is_fine = prism.is_clearly_crossed(slab, triangle);
+                if !is_fine && prism.is_beside(slab, triangle) {
+                    continue;
+                }
                 is_inside = true;
-                if !prism.is_crossed(slab, triangle) && prism.shares_area(slab, triangle) {
+                if !is_fine && !prism.is_crossed(slab, triangle) && prism.shares_area(slab, triangle) {
                     return Err((Failure::Crossing, slab));
                 }
             }
@@ -132,11 +137,34 @@ impl Layer {
         Prism::new(corners.map(|v| self.columns[v as usize]))
     }
 
-    /// Finds the contents of a prism among all source triangles and checks everything (L2 to L4).
-    pub fn fill(&mut self, prism: u32) -> Result<(), FailureIn> {
+    /// L2 for a prism.
+    pub fn check_volumes(&self, prism: u32) -> Result<(), FailureIn> {
+        self.prism(self.prisms[prism as usize]).check_volumes()
+    }
+
+    /// Finds the contents of prisms that satisfy L2 among all source triangles, and checks L3 and L4. Returns those that
+    /// fail, in the order given, with what fails first.
+    pub fn fill(&mut self, prisms: &[u32]) -> Vec<(u32, FailureIn)> {
+        let found: Vec<_> = prisms.par_iter().map(|&prism| self.find_contents(prism)).collect();
+        let mut failures = Vec::new();
+        for (&prism, found) in prisms.iter().zip(found) {
+            match found {
+                Ok(contents) => self.contents[prism as usize] = contents,
+                Err(failure) => failures.push((prism, failure)),
+            }
+        }
+        failures
+    }
+
+    /// L2 to L4 for a prism, from scratch.
+    pub fn is_valid(&self, prism: u32) -> bool {
+        self.check_volumes(prism).is_ok() && self.find_contents(prism).is_ok()
+    }
+
+    /// The contents of a prism among all source triangles, if they satisfy L3 and L4.
+    fn find_contents(&self, prism: u32) -> Result<Vec<u32>, FailureIn> {
         let corners = self.prisms[prism as usize];
         let body = self.prism(corners);
-        body.check_volumes()?;
         self.surface.check_caps(&body)?;
         for (k, side) in sides(corners).into_iter().enumerate() {
             if self.boundary.contains(&side) {
@@ -146,8 +174,7 @@ impl Layer {
         let mut near = Vec::new();
         self.surface.tree.query_box(&body.hull(), |t| near.push(t as u32));
         near.sort_unstable();
-        self.contents[prism as usize] = self.surface.contents(&body, &near)?;
-        Ok(())
+        self.surface.contents(&body, &near)
     }
 
     /// Replaces prisms by others over the same part of the surface if the new ones satisfy L2 to L4; `columns` may have

@@ -21,7 +21,7 @@ use crate::progress::Progress;
 
 use directions::extrusion_directions;
 use layer::Layer;
-use prism::{Column, Failure};
+use prism::{Column, Failure, FailureIn};
 
 /// What shell is wanted.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,7 +113,7 @@ pub fn build(
     simplify(&mut layer, params, target, progress, &mut info)?;
     info.prisms = layer.count();
     // What the operations kept up piece by piece, from scratch.
-    debug_assert!((0..layer.prisms.len() as u32).all(|p| !layer.exists[p as usize] || layer.fill(p).is_ok()));
+    debug_assert!((0..layer.prisms.len() as u32).all(|p| !layer.exists[p as usize] || layer.is_valid(p)));
     Ok((Shell::from_parts(source.clone(), layer.into_parts()), info))
 }
 
@@ -124,58 +124,129 @@ fn longest_side(positions: &[[f64; 3]]) -> f64 {
 
 /// The shell whose middle is the source: columns as long as the edges round them at first, and halved where the
 /// theorem's hypotheses fail.
+///
+/// Prisms are positive everywhere before the surface near any of them is looked at: the one needs a few signs, the other
+/// many, and most halvings come from the first. Then all prisms that changed are filled at a time.
 fn first_layer(
     source: &SourceMesh<3>,
     directions: &[Option<[f64; 3]>],
     target: f64,
     progress: &dyn Progress,
 ) -> Result<Layer, ShellError> {
-    let lengths = first_lengths(source, target);
-    let column = |v: usize, reach: [f64; 2]| -> Column {
-        let middle = source.positions()[v];
-        let moved = |by: f64| match directions[v] {
-            Some(direction) => [0, 1, 2].map(|axis| middle[axis] + by * direction[axis]),
-            None => middle,
-        };
-        [moved(-reach[0]), middle, moved(reach[1])]
-    };
-    let columns = (0..directions.len()).map(|v| column(v, [lengths[v]; 2])).collect();
-    let mut reaches: Vec<[f64; 2]> = lengths.iter().map(|&length| [length; 2]).collect();
-    let mut layer = Layer::new(source, columns);
-    let mut waiting: Vec<u32> = (0..layer.prisms.len() as u32).rev().collect();
-    let mut is_waiting = vec![true; waiting.len()];
-    while let Some(prism) = waiting.pop() {
-        is_waiting[prism as usize] = false;
-        let Err((failure, slab)) = layer.fill(prism) else { continue };
-        if progress.is_cancelled() {
-            return Err(ShellError::Cancelled);
+    let mut thinning = Thinning::new(source, directions, first_lengths(source, target));
+    loop {
+        thinning.make_positive(progress)?;
+        let unfilled: Vec<u32> = (0..).zip(&thinning.is_filled).filter(|(_, full)| !**full).map(|(p, _)| p).collect();
+        if unfilled.is_empty() {
+            return Ok(thinning.layer);
         }
-        let corners = layer.prisms[prism as usize];
-        // The longest columns are halved: short ones do less harm, and a fan of thin triangles would wear them out.
-        let longest = corners.iter().map(|&v| reaches[v as usize][slab]).fold(0.0, f64::max);
-        for v in corners.map(|v| v as usize) {
-            if reaches[v][slab] > 0.6 * longest {
-                reaches[v][slab] /= 2.0;
-                layer.columns[v] = column(v, reaches[v]);
+        let mut failures = Vec::new();
+        for some in unfilled.chunks(FILLED_AT_A_TIME) {
+            if progress.is_cancelled() {
+                return Err(ShellError::Cancelled);
             }
-            if reaches[v][slab] < SHORTEST * lengths[v] {
-                // Too short to be of use: without thickness, if the prisms round it can bear that.
-                let mut others = layer.around[v].iter().flat_map(|&p| layer.prisms[p as usize]);
-                if others.any(|other| layer.is_pinched(other)) {
-                    return Err(ShellError::Stuck { triangle: prism, reason: reason(failure) });
-                }
-                layer.columns[v] = [source.positions()[v]; 3];
-                reaches[v] = [0.0; 2];
-            }
+            failures.extend(thinning.layer.fill(some));
         }
-        for &touched in corners.iter().flat_map(|&v| &layer.around[v as usize]) {
-            if !is_waiting[touched as usize] {
-                is_waiting[touched as usize] = true;
-                waiting.push(touched);
+        unfilled.iter().for_each(|&prism| thinning.is_filled[prism as usize] = true);
+        failures.iter().for_each(|&(prism, _)| thinning.is_filled[prism as usize] = false);
+        for (prism, failure) in failures {
+            // Not if a neighbour has just been given shorter columns: that may do.
+            if !thinning.is_waiting[prism as usize] {
+                thinning.shorten(prism, failure)?;
             }
         }
     }
-    Ok(layer)
+}
+
+/// Prisms that are filled between two looks at whether to stop.
+const FILLED_AT_A_TIME: usize = 4096;
+
+/// The first layer while its columns become shorter.
+struct Thinning<'a> {
+    source: &'a SourceMesh<3>,
+    directions: &'a [Option<[f64; 3]>],
+    /// How long the columns were at first, on either side.
+    lengths: Vec<f64>,
+    /// How long they are, below and above.
+    reaches: Vec<[f64; 2]>,
+    layer: Layer,
+    /// Prisms of which L2 is not known, the next one last.
+    waiting: Vec<u32>,
+    is_waiting: Vec<bool>,
+    /// Prisms of which L3 and L4 are known.
+    is_filled: Vec<bool>,
+}
+
+impl<'a> Thinning<'a> {
+    fn new(source: &'a SourceMesh<3>, directions: &'a [Option<[f64; 3]>], lengths: Vec<f64>) -> Self {
+        let reaches: Vec<[f64; 2]> = lengths.iter().map(|&length| [length; 2]).collect();
+        let columns = (0..).zip(&reaches).map(|(v, &reach)| column(source, directions, v, reach)).collect();
+        let layer = Layer::new(source, columns);
+        let count = layer.prisms.len();
+        Self {
+            source,
+            directions,
+            lengths,
+            reaches,
+            layer,
+            waiting: (0..count as u32).rev().collect(),
+            is_waiting: vec![true; count],
+            is_filled: vec![false; count],
+        }
+    }
+
+    /// Shortens columns until all prisms satisfy L2.
+    fn make_positive(&mut self, progress: &dyn Progress) -> Result<(), ShellError> {
+        while let Some(prism) = self.waiting.pop() {
+            self.is_waiting[prism as usize] = false;
+            let Err(failure) = self.layer.check_volumes(prism) else { continue };
+            if progress.is_cancelled() {
+                return Err(ShellError::Cancelled);
+            }
+            self.shorten(prism, failure)?;
+        }
+        Ok(())
+    }
+
+    /// Halves the longest columns of a prism in the slab in which something fails; the prisms round them wait.
+    fn shorten(&mut self, prism: u32, (failure, slab): FailureIn) -> Result<(), ShellError> {
+        let corners = self.layer.prisms[prism as usize];
+        // The longest ones: short ones do less harm, and a fan of thin triangles would wear them out.
+        let longest = corners.iter().map(|&v| self.reaches[v as usize][slab]).fold(0.0, f64::max);
+        for v in corners.map(|v| v as usize) {
+            if self.reaches[v][slab] > 0.6 * longest {
+                self.reaches[v][slab] /= 2.0;
+                self.layer.columns[v] = column(self.source, self.directions, v, self.reaches[v]);
+            }
+            if self.reaches[v][slab] < SHORTEST * self.lengths[v] {
+                // Too short to be of use: without thickness, if the prisms round it can bear that.
+                let mut others = self.layer.around[v].iter().flat_map(|&p| self.layer.prisms[p as usize]);
+                if others.any(|other| self.layer.is_pinched(other)) {
+                    return Err(ShellError::Stuck { triangle: prism, reason: reason(failure) });
+                }
+                self.layer.columns[v] = [self.source.positions()[v]; 3];
+                self.reaches[v] = [0.0; 2];
+            }
+        }
+        for &touched in corners.iter().flat_map(|&v| &self.layer.around[v as usize]) {
+            self.is_filled[touched as usize] = false;
+            if !self.is_waiting[touched as usize] {
+                self.is_waiting[touched as usize] = true;
+                self.waiting.push(touched);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The column of a vertex of the source, as long as wanted below and above; without length at a singular one.
+fn column(source: &SourceMesh<3>, directions: &[Option<[f64; 3]>], v: usize, reach: [f64; 2]) -> Column {
+    let middle = source.positions()[v];
+    let moved = |by: f64| match directions[v] {
+        Some(direction) => [0, 1, 2].map(|axis| middle[axis] + by * direction[axis]),
+        None => middle,
+    };
+    [moved(-reach[0]), middle, moved(reach[1])]
 }
 
 fn reason(failure: Failure) -> &'static str {

@@ -1,7 +1,9 @@
 //! One prism of a shell against one triangle: the exact checks that the construction of shells (prisms change, the
 //! surface stays) and that of sections (the surface changes, prisms stay) have in common.
 
-use homeo_core::predicate::{Sign, crossing_sign, orient3d, share_area, triangles_meet, triangles_meet_beyond_vertex};
+use homeo_core::predicate::{
+    Sign, crossing_sign, orient3d, quick_crossing_sign, share_area, triangles_meet, triangles_meet_beyond_vertex,
+};
 use homeo_core::spatial::Aabb;
 
 type Point = [f64; 3];
@@ -114,7 +116,31 @@ impl Prism {
         (0..3).filter(|&i| !self.pinched[i]).all(|i| crosses(&self.columns[i]))
     }
 
-    /// Planes through sides of a slab with all of it on their negative side.
+    /// Whether floating point can tell that all pillars of a slab cross a triangle in the positive sense.
+    pub fn is_clearly_crossed(&self, slab: usize, triangle: [Point; 3]) -> bool {
+        let [low, high] = SLABS[slab];
+        let crosses =
+            |column: &Column| quick_crossing_sign(triangle, [column[low], column[high]]) == Some(Sign::Positive);
+        (0..3).filter(|&i| !self.pinched[i]).all(|i| crosses(&self.columns[i]))
+    }
+
+    /// Whether a slab lies on one closed side of a triangle's plane, with at most two of its points in it: they have
+    /// then no area in common.
+    pub fn is_beside(&self, slab: usize, triangle: [Point; 3]) -> bool {
+        let mut seen = [0; 3];
+        // The far points first: they mostly lie on either side where any do.
+        for level in [2 * slab, 1] {
+            for column in &self.columns {
+                seen[side(triangle, column[level]) as usize] += 1;
+                if seen[Sign::Zero as usize] > 2 || (seen[0] > 0 && seen[2] > 0) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Planes through sides of a slab, and its top and bottom, with all of it on their negative side.
     pub fn outer_walls(&self, slab: usize) -> Vec<[Point; 3]> {
         let slab = SLABS[slab];
         let points: Vec<Point> = self.columns.iter().flat_map(|column| slab.map(|level| column[level])).collect();
@@ -122,7 +148,8 @@ impl Prism {
             points.iter().all(|&p| side(*wall, p) != Sign::Positive)
                 && points.iter().any(|&p| side(*wall, p) == Sign::Negative)
         };
-        (0..3).flat_map(|k| self.wall(slab, k)).filter(is_outer).collect()
+        let [[a, b, c], high] = slab.map(|level| self.columns.map(|column| column[level]));
+        (0..3).flat_map(|k| self.wall(slab, k)).chain([[c, b, a], high]).filter(is_outer).collect()
     }
 }
 
