@@ -115,11 +115,16 @@ fn run(
     let shell = shell.with_section(made.section.surface.clone());
     let provenance = provenance(options, construction);
     let claim = certify(session, &shell, &provenance, targets.map, outputs)?;
-    let mut moved = attributes::moved(session, &shell, &mesh.file, &options.density)?;
-    if let (Some(texture), Some((_, like))) = (&made.section.texture, &carried) {
-        let place =
-            moved.iter_mut().find(|moved| moved.attribute.name == like.name && moved.attribute.element == like.element);
-        place.into_iter().for_each(|moved| *moved = texture::carried(texture, like));
+    // The construction itself carried the texture; the others are looked for on the source.
+    let mut others = mesh.file.attributes.clone();
+    let carried = carried.zip(made.section.texture.as_ref()).map(|((_, like), texture)| {
+        let place = mesh.file.attributes.iter().position(|other| std::ptr::eq(other, like)).unwrap_or(0);
+        others.remove(place);
+        (place, texture::carried(texture, like))
+    });
+    let mut moved = attributes::moved(session, &shell, &others, &options.density)?;
+    if let Some((place, texture)) = carried {
+        moved.insert(place.min(moved.len()), texture);
     }
     let textures = (start.texture.as_ref(), made.section.texture.as_ref());
     let described = attributes::described(&moved);

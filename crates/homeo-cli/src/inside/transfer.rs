@@ -33,7 +33,7 @@ pub fn run(session: &Session, options: &TransferArgs, outputs: &mut Outputs) -> 
     let (shell, claim) = joined(session, options, shell, claim)?;
     let from = read(session, options, &options.from)?;
     require_same(&options.from, &source_of(&from)?, shell.source())?;
-    let moved = attributes::moved(session, &shell, &from.file, &options.density)?;
+    let moved = attributes::moved(session, &shell, &from.file.attributes, &options.density)?;
     if moved.is_empty() {
         session.display().note(&format!("{} has no attributes to transfer", options.from.display()));
     }
