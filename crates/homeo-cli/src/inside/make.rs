@@ -45,14 +45,17 @@ pub fn simplify(session: &Session, options: &SimplifyArgs, outputs: &mut Outputs
         let mut lines = Lines::default();
         let share = 100.0 * info.triangles as f64 / first.max(1) as f64;
         lines.add("triangles", format!("{} of {first} ({share:.1} %)", info.triangles));
-        if info.end == SimplifyEnd::Exhausted && info.triangles > params.triangles {
-            lines.add("ended", "no edge is left that could be collapsed in this shell");
+        // Without a number the error ends it, as it should.
+        let reached = options.to.map(|_| info.end == SimplifyEnd::Reached);
+        if reached == Some(false) {
+            let within = if options.error.is_some() { "shell with this error" } else { "shell" };
+            lines.add("ended", format!("no edge is left that could be collapsed in this {within}"));
         }
         lines.add("error", format!("{:.2e} at most (root of the mean squared distance to planes)", info.largest_error));
         let refused = info.refusals;
         let quality = json!({
             "triangles": info.triangles, "first_triangles": first, "collapses": info.collapses,
-            "largest_error": info.largest_error, "reached": info.end == SimplifyEnd::Reached,
+            "largest_error": info.largest_error, "reached": reached,
             "refused": {"links": refused.links, "shape": refused.shape, "shell": refused.shell, "texture": refused.texture},
         });
         Ok(Made { section, quality, lines })

@@ -25,8 +25,9 @@ const NEXT: f64 = 10.0;
 
 /// Writes the mesh as OBJ with material and image, and as PLY with fields.
 pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
-    // Rounded, so that both files hold the same numbers.
-    let points: Vec<Point> = (0..ALONG * ROUND).map(|v| point(v / ROUND, v % ROUND).map(rounded)).collect();
+    // Multiples of 1/1024: as decimals they are exact, in both files.
+    let points: Vec<Point> =
+        (0..ALONG * ROUND).map(|v| point(v / ROUND, v % ROUND).map(|x| (1024.0 * x).round() / 1024.0)).collect();
     let quads: Vec<[usize; 2]> = (0..ALONG * ROUND).map(|q| [q / ROUND, q % ROUND]).collect();
     let corners = |[i, j]: [usize; 2]| [[[i, j], [i + 1, j + 1], [i + 1, j]], [[i, j], [i, j + 1], [i + 1, j + 1]]];
     std::fs::write(folder.join("knot.obj"), obj(&points, quads.iter().flat_map(|&quad| corners(quad)))?)?;
@@ -41,11 +42,6 @@ pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
 
 fn vertex([i, j]: [usize; 2]) -> usize {
     i % ALONG * ROUND + j % ROUND
-}
-
-/// With four decimals.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.4}").parse().unwrap_or(x)
 }
 
 /// A point of the tube: round the knot in the plane across it.
@@ -97,9 +93,9 @@ fn obj(points: &[Point], triangles: impl Iterator<Item = [[usize; 2]; 3]>) -> Re
 /// A temperature at vertices; for triangles a load per area and the number of their chart.
 fn fields(points: &[Point], triangles: &[[u32; 3]]) -> Vec<Attribute> {
     let attribute = |name: &str, element, values| Attribute { name: name.to_owned(), element, components: 1, values };
-    let temperature = points.iter().map(|[x, y, z]| rounded(20.0 + 5.0 * x - 3.0 * y + 2.0 * z * z)).collect();
+    let temperature = points.iter().map(|[x, y, z]| 20.0 + 5.0 * x - 3.0 * y + 2.0 * z * z).collect();
     let height = |t: &[u32; 3]| t.iter().map(|&v| points[v as usize][2]).sum::<f64>() / 3.0;
-    let load = triangles.iter().map(|t| rounded(1.0 + height(t).max(0.0))).collect();
+    let load = triangles.iter().map(|t| 1.0 + height(t).max(0.0)).collect();
     let chart = (0..triangles.len()).map(|t| (t * CHARTS / triangles.len()) as i64).collect();
     vec![
         attribute("temperature", Element::Vertex, Values::F64(temperature)),

@@ -11,8 +11,10 @@ use crate::{pattern, png};
 type Point = [f64; 3];
 
 /// Pixels of a panel, and samples along each side of a pixel.
-const SIDE: usize = 560;
+const SIDE: usize = 520;
 const SAMPLES: usize = 3;
+/// Shades of each colour.
+const SHADES: f64 = 25.0;
 const PAPER: Point = [1.0; 3];
 const LINE: Point = [0.13, 0.13, 0.15];
 const SEAM: Point = [0.85, 0.05, 0.15];
@@ -35,8 +37,8 @@ pub fn write(meshes: &[&str], image: &Path) -> Result<(), Box<dyn Error>> {
     let frame = frame(&seen(&meshes[0]));
     let panels: Vec<Vec<Point>> = meshes.iter().map(|mesh| panel(&triangles(mesh, &seen(mesh)), frame)).collect();
     let rows = (0..SIDE).flat_map(|y| panels.iter().flat_map(move |panel| &panel[y * SIDE..(y + 1) * SIDE]));
-    // Sixteen shades of each colour make a small file.
-    let pixels: Vec<[u8; 3]> = rows.map(|pixel| pixel.map(|x| (15.0 * x).round() as u8 * 17)).collect();
+    // Few shades make a small file.
+    let pixels: Vec<[u8; 3]> = rows.map(|pixel| pixel.map(|x| (255.0 * (SHADES * x).round() / SHADES) as u8)).collect();
     png::write(image, SIDE * meshes.len(), &pixels)?;
     Ok(())
 }
