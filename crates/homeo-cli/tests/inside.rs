@@ -230,7 +230,7 @@ fn points_go_there_and_back_exactly() {
     };
     there_and_back(&points, "", "--inverse");
     there_and_back(&exact_vertices(&mesh(&folder, "s.obj")), "--inverse", "");
-    folder.line("eval s.homeo --points p.csv -o near.csv -q").expect(0);
+    folder.write("p.csv", &points).line("eval s.homeo --points p.csv -o near.csv -q").expect(0);
     let report = folder.line("report s.homeo -o s.html --json -q").expect(0).json();
     assert_eq!(report["certificate"]["holds"], true);
 }

@@ -110,7 +110,7 @@ fn run(
     session.stage("check");
     let source = source_mesh(&mesh.file, shell::unfit(session, &mesh, options.triangulate)?);
     let params = ShellParams { thickness: options.thickness, ..ShellParams::default() };
-    let shell = shell::construct(session, &source, &params)?.shell;
+    let shell = shell::construct_in_time(session, &source, &params)?;
     let carried = texture::of_file(&mesh.file);
     let start = TexturedSurface { surface: source, texture: carried.as_ref().map(|(texture, _)| texture.clone()) };
     let made = make(&shell, &start, options.features.map(f64::to_radians))?;

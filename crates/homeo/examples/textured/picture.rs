@@ -11,7 +11,7 @@ use crate::{pattern, png};
 type Point = [f64; 3];
 
 /// Pixels of a panel, and samples along each side of a pixel.
-const SIDE: usize = 520;
+const SIDE: usize = 500;
 const SAMPLES: usize = 3;
 /// Shades of each colour.
 const SHADES: f64 = 25.0;
