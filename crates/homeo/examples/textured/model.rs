@@ -36,7 +36,7 @@ pub fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
     let triangles: Vec<[u32; 3]> =
         quads.iter().flat_map(|&quad| corners(quad)).map(|t| t.map(|place| vertex(place) as u32)).collect();
     let mesh = MeshFile { attributes: fields(&points, &triangles), ..MeshFile::from_triangles(points, &triangles) };
-    write_mesh(&folder.join("knot.ply"), &mesh, &WriteOptions { encoding: Encoding::Binary, ..Default::default() })?;
+    write_mesh(&folder.join("knot.ply"), &mesh, &WriteOptions { encoding: Encoding::Binary })?;
     Ok(())
 }
 
