@@ -301,6 +301,24 @@ fn textures_keep_their_seams_and_turn_nothing_over() {
 }
 
 #[test]
+fn a_texture_that_cannot_be_kept_is_said_so() {
+    let folder = Folder::new();
+    let whole = textured();
+    let bare: String = whole
+        .lines()
+        .map(|line| if line == "f 1/1 9/10 10/11" { "f 1 9 10\n".into() } else { format!("{line}\n") })
+        .collect();
+    assert_ne!(bare, whole);
+    folder.write("whole.obj", whole).write("bare.obj", bare);
+    let run = folder.line("simplify bare.obj --to 90% -o s.obj --json").expect(0);
+    assert!(run.stderr.contains("its seams are not kept"), "{}", run.stderr);
+    assert_eq!((total(moved(&run.json(), "texture")) % 3, &run.json()["quality"]["texture"]), (0, &Value::Null));
+    let run = folder.line("simplify whole.obj --to 2 -o s.obj").expect(0);
+    assert!(!run.stderr.contains("its seams are not kept"), "{}", run.stderr);
+    assert!(run.stdout.contains("by the texture"), "why it ended is said: {}", run.stdout);
+}
+
+#[test]
 fn fields_and_labels_come_through_ply() {
     let folder = Folder::new();
     let first = torus(N, M);

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use homeo::certificate::Provenance;
 use homeo::construct::section::{
-    self, RemeshParams, SectionError, SimplifyEnd, SimplifyParams, Texture, TexturedSurface,
+    self, Refusals, RemeshParams, SectionError, SimplifyEnd, SimplifyParams, Texture, TexturedSurface,
 };
 use homeo::construct::shell::ShellParams;
 use homeo::map::Shell;
 use homeo::progress::Progress;
+use homeo_core::io::Element;
 use homeo_verify::Claim;
 use serde_json::{Value, json};
 
@@ -50,6 +51,11 @@ pub fn simplify(session: &Session, options: &SimplifyArgs, outputs: &mut Outputs
         if reached == Some(false) {
             let within = if options.error.is_some() { "shell with this error" } else { "shell" };
             lines.add("ended", format!("no edge is left that could be collapsed in this {within}"));
+            let Refusals { links, shape, shell, texture } = info.refusals;
+            lines.add(
+                "refused",
+                format!("{shell} by the shell, {texture} by the texture, {shape} by shape, {links} by links"),
+            );
         }
         lines.add("error", format!("{:.2e} at most (root of the mean squared distance to planes)", info.largest_error));
         let refused = info.refusals;
@@ -112,6 +118,11 @@ fn run(
     let params = ShellParams { thickness: options.thickness, ..ShellParams::default() };
     let shell = shell::construct_in_time(session, &source, &params)?;
     let carried = texture::of_file(&mesh.file);
+    if carried.is_none() && mesh.file.attribute("texture", Element::Corner).is_some() {
+        session.display().note(
+            "the texture has corners without coordinates, or not two of them each: its seams are not kept, its values are moved",
+        );
+    }
     let start = TexturedSurface { surface: source, texture: carried.as_ref().map(|(texture, _)| texture.clone()) };
     let made = make(&shell, &start, options.features.map(f64::to_radians))?;
     session.check()?;
