@@ -3,7 +3,8 @@
 use super::{Rational, Scalar};
 use crate::predicate::Sign;
 
-/// All numbers from `low` to `high`. Operations round outwards, so the result holds every exact result.
+/// All numbers from `low` to `high`. Operations round outwards, so the result holds every exact result; what is certainly
+/// zero stays so.
 ///
 /// A result that nothing is known about (after a division by an interval that holds 0, say) is the [whole
 /// line](Self::WHOLE).
@@ -23,10 +24,17 @@ impl Interval {
     /// All numbers: nothing is known.
     pub const WHOLE: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
-    /// An interval round an exact number.
+    /// An interval round an exact number; a point where the number is a double.
     pub fn around(exact: &Rational) -> Self {
         let near = exact.to_f64();
-        Self::outward(near, near)
+        let is_exact = Rational::from_f64(near).is_some_and(|there| there == *exact);
+        if is_exact { Self::from_f64(near) } else { Self::outward(near, near) }
+    }
+
+    /// The smallest interval that holds all numbers of both.
+    #[must_use]
+    pub fn hull_with(&self, other: &Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
     /// The least number in it.
@@ -58,6 +66,10 @@ impl Interval {
         }
     }
 
+    fn is_zero(&self) -> bool {
+        self.low == 0.0 && self.high == 0.0
+    }
+
     /// The smallest interval between rounded ends, one step further out on either side.
     fn outward(low: f64, high: f64) -> Self {
         if low.is_nan() || high.is_nan() { Self::WHOLE } else { Self { low: low.next_down(), high: high.next_up() } }
@@ -80,16 +92,27 @@ impl Scalar for Interval {
     }
 
     fn plus(&self, other: &Self) -> Self {
+        if self.is_zero() {
+            return *other;
+        }
+        if other.is_zero() {
+            return *self;
+        }
         Self::outward(self.low + other.low, self.high + other.high)
     }
 
     fn minus(&self, other: &Self) -> Self {
+        if other.is_zero() {
+            return *self;
+        }
+        if self.is_zero() {
+            return Self { low: -other.high, high: -other.low };
+        }
         Self::outward(self.low - other.high, self.high - other.low)
     }
 
     fn times(&self, other: &Self) -> Self {
-        let zero = Some(Sign::Zero);
-        if self.sign() == zero || other.sign() == zero {
+        if self.is_zero() || other.is_zero() {
             return Self::from_f64(0.0);
         }
         let (a, b) = (self, other);
@@ -99,6 +122,9 @@ impl Scalar for Interval {
     fn divide(&self, other: &Self) -> Self {
         if !matches!(other.sign(), Some(Sign::Positive | Sign::Negative)) {
             return Self::WHOLE;
+        }
+        if self.is_zero() {
+            return *self;
         }
         let (a, b) = (self, other);
         Self::hull([a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high])
@@ -110,15 +136,15 @@ impl Scalar for Interval {
             Some(Sign::Positive)
         } else if self.high < 0.0 {
             Some(Sign::Negative)
-        } else if self.low == 0.0 && self.high == 0.0 {
+        } else if self.is_zero() {
             Some(Sign::Zero)
         } else {
             None
         }
     }
 
-    fn near(&self) -> f64 {
-        self.middle_and_radius().0
+    fn enclosure(&self) -> Interval {
+        *self
     }
 }
 

@@ -1,11 +1,11 @@
 //! What a geometric formula needs of its numbers, so that it is written once for exact and for fast arithmetic.
 
-use super::Rational;
+use super::{Interval, Rational};
 use crate::predicate::Sign;
 
 /// A number of a field, or an enclosure of one.
 ///
-/// A formula over scalars that branches only on certain [signs](Self::sign) gives with [`Interval`](super::Interval) an enclosure of what it
+/// A formula over scalars that branches only on certain [signs](Self::sign) gives with [`Interval`] an enclosure of what it
 /// gives with [`Rational`], or stops where rounding leaves a sign open: it never takes another branch.
 ///
 /// ```
@@ -35,8 +35,12 @@ pub trait Scalar: Clone + Send + Sync {
     fn divide(&self, other: &Self) -> Self;
     /// The sign, where it is certain.
     fn sign(&self) -> Option<Sign>;
+    /// An interval that holds the number.
+    fn enclosure(&self) -> Interval;
     /// A double near the number.
-    fn near(&self) -> f64;
+    fn near(&self) -> f64 {
+        self.enclosure().middle_and_radius().0
+    }
 }
 
 impl Scalar for Rational {
@@ -57,6 +61,9 @@ impl Scalar for Rational {
     }
     fn sign(&self) -> Option<Sign> {
         Some(self.sign())
+    }
+    fn enclosure(&self) -> Interval {
+        Interval::around(self)
     }
     fn near(&self) -> f64 {
         self.to_f64()

@@ -6,8 +6,8 @@
 //!              On a cell the map from source to section is affine.
 //! Source:      Jiang, Schneider, Zorin, Panozzo 2020 (doi 10.1145/3414685.3417769), section 4 (transfer); the exact
 //!              subdivision is ours.
-//! Arithmetic:  rationals; signs by floating-point filters first. Nothing is rounded.
-//! Cost:        about linear in the cells; each takes a few dozen rational operations. One prism at a time is held.
+//! Arithmetic:  exact; rationals are computed only where intervals leave a sign open.
+//! Cost:        about linear in the cells; each takes some hundred operations on intervals. 64 prisms are held at a time.
 //! Fails when:  the shell's certificate does not hold: then pieces overlap or leave gaps, and shares do not add up to 1.
 //! See:         `docs/theory/shells.md`.
 
@@ -15,25 +15,24 @@ mod pieces;
 mod polygon;
 mod shares;
 
-use homeo_core::number::Rational;
+use homeo_core::number::{Lazy, Scalar};
 use rayon::prelude::*;
 
 use crate::map::Shell;
 use crate::progress::Progress;
 
-use pieces::{Piece, pieces_in};
+use pieces::{Piece, Role, pieces_in};
+use polygon::{Place, doubled_area, turn};
 
 pub use shares::{Share, shares};
 
-/// A corner of a cell: the same point on the middle surface, on the source and on the section.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CellCorner {
-    /// Weights of the prism's columns.
-    pub on_middle: [Rational; 3],
-    /// Weights in the source's triangle.
-    pub on_source: [Rational; 3],
-    /// Weights in the section's triangle.
-    pub on_section: [Rational; 3],
+/// On which edges a side of a cell lies: the corner of the triangle that is opposite to the edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CellSide {
+    /// Of the source's triangle.
+    pub of_source: Option<u8>,
+    /// Of the section's triangle.
+    pub of_section: Option<u8>,
 }
 
 /// A convex polygon on which the map from the source to the section is affine.
@@ -45,20 +44,49 @@ pub struct Cell {
     pub source: u32,
     /// The triangle of the section; the prism where the shell has no other section.
     pub section: u32,
-    /// At least three corners, counter-clockwise; no three of them need turn strictly.
-    pub corners: Vec<CellCorner>,
+    /// At least three corners, counter-clockwise; three of them may lie on a line. Each is given by the weights of the
+    /// prism's columns.
+    pub corners: Vec<[Lazy; 3]>,
+    /// From each corner to the next one.
+    pub sides: Vec<CellSide>,
+    frame_of_source: [[Lazy; 3]; 3],
+    frame_of_section: [[Lazy; 3]; 3],
 }
 
 impl Cell {
+    /// The weights in the source's triangle of a place over the prism.
+    pub fn on_source(&self, place: &[Lazy; 3]) -> [Lazy; 3] {
+        weights_in(&self.frame_of_source, place)
+    }
+
+    /// The weights in the section's triangle of a place over the prism.
+    pub fn on_section(&self, place: &[Lazy; 3]) -> [Lazy; 3] {
+        weights_in(&self.frame_of_section, place)
+    }
+
     /// Its area as a part of that of its triangle of the source.
-    pub fn share_of_source(&self) -> Rational {
-        polygon::doubled_area(self.corners.iter().map(|corner| [&corner.on_source[1], &corner.on_source[2]]))
+    pub fn share_of_source(&self) -> Lazy {
+        self.area().divide(&whole(&self.frame_of_source))
     }
 
     /// Its area as a part of that of its triangle of the section.
-    pub fn share_of_section(&self) -> Rational {
-        polygon::doubled_area(self.corners.iter().map(|corner| [&corner.on_section[1], &corner.on_section[2]]))
+    pub fn share_of_section(&self) -> Lazy {
+        self.area().divide(&whole(&self.frame_of_section))
     }
+
+    fn area(&self) -> Lazy {
+        doubled_area(&self.corners.iter().collect::<Vec<_>>())
+    }
+}
+
+fn whole([a, b, c]: &[Place; 3]) -> Lazy {
+    turn(a, b, c)
+}
+
+/// The weights of the corners of a triangle at a place.
+fn weights_in([a, b, c]: &[Place; 3], place: &Place) -> [Lazy; 3] {
+    let whole = turn(a, b, c);
+    [turn(b, c, place), turn(c, a, place), turn(a, b, place)].map(|part| part.divide(&whole))
 }
 
 /// Prisms that are worked on before their cells are handed over.
@@ -96,26 +124,33 @@ pub fn for_each_cell(shell: &Shell, progress: &(dyn Progress + Sync), mut visit:
 
 /// The cells over one triangle of the middle surface.
 fn cells_of(shell: &Shell, prism: u32) -> Vec<Cell> {
-    let of_source = pieces_in(shell, &shell.source, prism);
+    let of_source = pieces_in(shell, &shell.source, Role::Source, prism);
     let of_section = match &shell.section {
-        Some(section) => pieces_in(shell, section, prism),
+        Some(section) => pieces_in(shell, section, Role::Section, prism),
         None => vec![Piece::whole_prism(prism)],
     };
     let mut cells = Vec::new();
     for piece in &of_source {
         for other in of_section.iter().filter(|other| piece.hull.meets(&other.hull)) {
             let corners = polygon::intersection(&piece.corners, &other.corners);
-            if corners.is_empty() {
-                continue;
+            if !corners.is_empty() {
+                cells.push(joined(prism, piece, other, corners));
             }
-            let on_section = other.weights_at(corners.iter().map(|corner| &corner.place));
-            let joined = corners.into_iter().zip(on_section).map(|(corner, on_section)| CellCorner {
-                on_middle: corner.place.on_middle(),
-                on_source: corner.weights,
-                on_section,
-            });
-            cells.push(Cell { prism, source: piece.triangle, section: other.triangle, corners: joined.collect() });
         }
     }
     cells
+}
+
+fn joined(prism: u32, piece: &Piece, other: &Piece, corners: Vec<polygon::Corner<3>>) -> Cell {
+    let side =
+        |corner: &polygon::Corner<3>| CellSide { of_source: corner.side.of_source, of_section: corner.side.of_section };
+    Cell {
+        prism,
+        source: piece.triangle,
+        section: other.triangle,
+        sides: corners.iter().map(side).collect(),
+        corners: corners.into_iter().map(|corner| corner.at).collect(),
+        frame_of_source: piece.frame.clone(),
+        frame_of_section: other.frame.clone(),
+    }
 }

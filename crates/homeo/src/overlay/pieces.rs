@@ -1,9 +1,10 @@
 //! How the triangles of a section lie over one middle triangle.
 
-use homeo_core::number::Rational;
+use homeo_core::number::{Interval, Lazy, Rational, Scalar};
 use homeo_core::predicate::{Sign, orient3d};
+use homeo_core::spatial::Aabb;
 
-use super::polygon::{Corner, Place, clipped};
+use super::polygon::{Corner, Edges, Place, clipped};
 use crate::map::{Shell, ShellSurface};
 
 type Point = [f64; 3];
@@ -11,95 +12,66 @@ type Point = [f64; 3];
 /// The image of the part of a triangle that lies in one tetrahedron: a convex polygon, counter-clockwise.
 pub(super) struct Piece {
     pub triangle: u32,
-    pub corners: Vec<Corner>,
-    pub hull: Hull,
+    pub corners: Vec<Corner<3>>,
+    pub hull: Aabb,
+    /// Where the triangle's corners would be if all of it lay in the tetrahedron.
+    pub frame: [Place; 3],
 }
 
-/// A box round a polygon.
-#[derive(Clone, Copy)]
-pub(super) struct Hull {
-    low: [f64; 2],
-    high: [f64; 2],
+/// Which of the two surfaces pieces belong to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    Source,
+    Section,
 }
 
-impl Hull {
-    fn of(corners: &[Corner]) -> Self {
-        let start = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
-        corners.iter().fold(start, |hull, corner| {
-            let [low, high] = corner.place.bounds();
-            Self {
-                low: [0, 1].map(|axis| hull.low[axis].min(low[axis])),
-                high: [0, 1].map(|axis| hull.high[axis].max(high[axis])),
-            }
-        })
-    }
-
-    pub fn meets(&self, other: &Self) -> bool {
-        (0..2).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+impl Role {
+    fn edge(self, opposite: usize) -> Edges {
+        let edge = Some(opposite as u8);
+        match self {
+            Self::Source => Edges { of_source: edge, of_section: None },
+            Self::Section => Edges { of_source: None, of_section: edge },
+        }
     }
 }
 
 impl Piece {
-    fn new(triangle: u32, corners: Vec<Corner>) -> Self {
-        Self { triangle, hull: Hull::of(&corners), corners }
+    fn new(triangle: u32, corners: Vec<Corner<3>>, frame: [Place; 3]) -> Self {
+        let ends = corners.iter().flat_map(|corner| {
+            let ends = corner.at.each_ref().map(Lazy::interval);
+            [ends.map(|end| end.low()), ends.map(|end| end.high())]
+        });
+        Self { triangle, hull: Aabb::of(&ends.collect::<Vec<_>>()), corners, frame }
     }
 
     /// A triangle of the middle surface itself.
     pub fn whole_prism(prism: u32) -> Self {
-        let corners = [0, 1, 2].map(|k| {
-            let weights = unit(k);
-            Corner { place: Place::new([weights[1].clone(), weights[2].clone()]), weights }
-        });
-        Self::new(prism, corners.to_vec())
-    }
-
-    /// The weights in the piece's triangle of some places: an affine map, known at its corners.
-    pub fn weights_at<'p>(&self, places: impl Iterator<Item = &'p Place>) -> Vec<[Rational; 3]> {
-        let from = &self.corners[0];
-        let step = |corner: &Corner| [0, 1].map(|axis| &corner.place.exact[axis] - &from.place.exact[axis]);
-        let cross = |u: &[Rational; 2], v: &[Rational; 2]| &(&u[0] * &v[1]) - &(&u[1] * &v[0]);
-        let steps: Vec<[Rational; 2]> = self.corners.iter().map(step).collect();
-        // A piece has an area, so one of the triangles of its fan has.
-        let fan = (1..self.corners.len() - 1).map(|k| (k, cross(&steps[k], &steps[k + 1])));
-        let Some((k, whole)) = fan.into_iter().find(|(_, whole)| !whole.is_zero()) else { return Vec::new() };
-        let [u, v] = [k, k + 1].map(|k| &self.corners[k].weights);
-        let at = |place: &Place| -> [Rational; 3] {
-            if let Some(corner) = self.corners.iter().find(|corner| corner.place.exact == place.exact) {
-                return corner.weights.clone();
-            }
-            let p = [0, 1].map(|axis| &place.exact[axis] - &from.place.exact[axis]);
-            let (x, y) = (&cross(&p, &steps[k + 1]) / &whole, &cross(&steps[k], &p) / &whole);
-            [0, 1, 2].map(|i| {
-                let base = &from.weights[i];
-                &(base + &(&x * &(&u[i] - base))) + &(&y * &(&v[i] - base))
-            })
-        };
-        places.map(at).collect()
+        let frame: [Place; 3] =
+            std::array::from_fn(|k| [0, 1, 2].map(|column| Lazy::from_f64(if k == column { 1.0 } else { 0.0 })));
+        let corner = |k: usize| Corner { at: frame[k].clone(), side: Role::Section.edge((k + 2) % 3), is_new: false };
+        Self::new(prism, (0..3).map(corner).collect(), frame.clone())
     }
 }
 
 /// The pieces of a surface in a prism. Where a triangle lies in the face between two tetrahedra, it counts for the one
 /// above it.
-pub(super) fn pieces_in(shell: &Shell, surface: &ShellSurface, prism: u32) -> Vec<Piece> {
+pub(super) fn pieces_in(shell: &Shell, surface: &ShellSurface, role: Role, prism: u32) -> Vec<Piece> {
     let slabs = [2 * prism as usize, 2 * prism as usize + 1];
-    let points: Vec<Point> = slabs.iter().flat_map(|&slab| shell.slab_cells(slab)).flat_map(|(_, cell)| cell).collect();
-    let near = surface.near(&points);
     let mut pieces = Vec::new();
-    for slab in slabs {
-        for (columns, cell) in shell.slab_cells(slab) {
-            let whole = orient3d(cell[0], cell[1], cell[2], cell[3]);
-            if whole == Sign::Zero {
-                continue; // a pinched column
-            }
-            let body = Tetrahedron { corners: cell, columns, is_reversed: whole == Sign::Negative };
-            pieces.extend(near.iter().filter_map(|&t| Some(Piece::new(t, body.part_of(surface.corners(t))?))));
+    for (columns, corners) in slabs.into_iter().flat_map(|slab| shell.slab_cells(slab)) {
+        let whole = orient3d(corners[0], corners[1], corners[2], corners[3]);
+        if whole == Sign::Zero {
+            continue; // a pinched column
         }
+        let body = Tetrahedron { corners, columns, is_reversed: whole == Sign::Negative, role };
+        pieces.extend(
+            surface
+                .near(&corners.map(|p| p.map(Interval::from_f64)))
+                .into_iter()
+                .filter_map(|t| body.piece_of(t, surface.corners(t))),
+        );
     }
     pieces
-}
-
-fn unit(k: usize) -> [Rational; 3] {
-    [0, 1, 2].map(|i| if i == k { Rational::ONE } else { Rational::ZERO })
 }
 
 /// A tetrahedron of a slab.
@@ -108,11 +80,12 @@ struct Tetrahedron {
     /// The column of the prism on which each corner lies.
     columns: [usize; 4],
     is_reversed: bool,
+    role: Role,
 }
 
 impl Tetrahedron {
-    /// The part of a triangle in it, as a polygon with an area; `None` without one.
-    fn part_of(&self, triangle: [Point; 3]) -> Option<Vec<Corner>> {
+    /// The part of a triangle in it; `None` without an area.
+    fn piece_of(&self, number: u32, triangle: [Point; 3]) -> Option<Piece> {
         let signs: [[Sign; 3]; 4] = std::array::from_fn(|face| triangle.map(|point| self.sign(face, point)));
         for (face, signs) in signs.iter().enumerate() {
             if signs.iter().all(|sign| *sign != Sign::Positive) {
@@ -122,18 +95,29 @@ impl Tetrahedron {
                 }
             }
         }
-        let weights: [[Rational; 4]; 3] = triangle.map(|point| self.weights(point));
-        let place = |weights: &[Rational; 4]| {
-            let on = |column: usize| (0..4).filter(|&i| self.columns[i] == column).map(|i| weights[i].clone()).sum();
-            Place::new([on(1), on(2)])
-        };
-        let mut rest: Vec<Corner> = (0..3).map(|k| Corner { place: place(&weights[k]), weights: unit(k) }).collect();
-        for (face, signs) in signs.iter().enumerate().filter(|(_, signs)| signs.contains(&Sign::Negative)) {
-            let height = |corner: &Corner| -> Rational { (0..3).map(|k| &corner.weights[k] * &weights[k][face]).sum() };
-            let sides: Vec<Sign> = rest.iter().map(|corner| corner_sign(corner, signs, &height)).collect();
-            rest = clipped(rest, &sides, height)?;
+        let weights: [[Lazy; 4]; 3] = std::array::from_fn(|k| self.weights(triangle[k], signs.map(|face| face[k])));
+        let frame = weights.each_ref().map(|weights| self.place(weights));
+        let corner = |k: usize| Corner { at: weights[k].clone(), side: self.role.edge((k + 2) % 3), is_new: false };
+        let mut rest: Vec<Corner<4>> = (0..3).map(corner).collect();
+        for face in (0..4).filter(|&face| signs[face].contains(&Sign::Negative)) {
+            let heights: Vec<Lazy> = rest.iter().map(|corner| corner.at[face].clone()).collect();
+            let signs: Vec<Sign> = heights.iter().map(Lazy::certain_sign).collect();
+            rest = clipped(rest, &signs, &heights, Edges::default())?;
+            // What was cut off ends where this weight is zero, which is worth knowing without computing it.
+            rest.iter_mut().filter(|corner| corner.is_new).for_each(|corner| corner.at[face] = Lazy::from_f64(0.0));
         }
-        Some(rest)
+        let corners =
+            rest.into_iter().map(|corner| Corner { at: self.place(&corner.at), side: corner.side, is_new: false });
+        Some(Piece::new(number, corners.collect(), frame))
+    }
+
+    /// The place of a point in the middle triangle.
+    fn place(&self, weights: &[Lazy; 4]) -> Place {
+        let on = |column: usize| {
+            let parts = (0..4).filter(|&i| self.columns[i] == column).map(|i| &weights[i]);
+            parts.fold(Lazy::from_f64(0.0), |sum, part| sum.plus(part))
+        };
+        [on(0), on(1), on(2)]
     }
 
     /// On which side of a face, opposite to the corner of that number, a point lies: positive inside.
@@ -152,28 +136,27 @@ impl Tetrahedron {
         orient3d(a, b, c, self.corners[face]) == Sign::Positive
     }
 
-    /// The barycentric weights of a point, inside or not.
-    fn weights(&self, point: Point) -> [Rational; 4] {
-        let exact = |p: Point| p.map(|x| Rational::from_f64(x).unwrap_or(Rational::ZERO));
-        let corners = self.corners.map(exact);
-        let step = |p: &[Rational; 3]| [0, 1, 2].map(|axis| &p[axis] - &corners[0][axis]);
-        let [u, v, w, p] = [step(&corners[1]), step(&corners[2]), step(&corners[3]), step(&exact(point))];
-        let whole = determinant(&u, &v, &w);
-        let parts = [determinant(&p, &v, &w), determinant(&u, &p, &w), determinant(&u, &v, &p)].map(|d| &d / &whole);
-        let [b, c, d] = parts;
-        [&(&(&Rational::ONE - &b) - &c) - &d, b, c, d]
+    /// The barycentric weights of a point, inside or not, of which the signs are known.
+    fn weights(&self, point: Point, signs: [Sign; 4]) -> [Lazy; 4] {
+        let corners = self.corners;
+        std::array::from_fn(|i| match signs[i] {
+            Sign::Zero => Lazy::from_f64(0.0),
+            _ => Lazy::of_formula(weight::<Interval>(corners, i, point), move || weight::<Rational>(corners, i, point)),
+        })
     }
 }
 
-/// The sign of a corner's height: known for the triangle's own corners.
-fn corner_sign(corner: &Corner, signs: &[Sign; 3], height: &impl Fn(&Corner) -> Rational) -> Sign {
-    match corner.weights.iter().position(|weight| *weight == Rational::ONE) {
-        Some(k) => signs[k],
-        None => height(corner).sign(),
-    }
+/// The barycentric weight of a point at a corner of a tetrahedron.
+fn weight<T: Scalar>(corners: [Point; 4], i: usize, point: Point) -> T {
+    let mut moved = corners;
+    moved[i] = point;
+    volume::<T>(moved).divide(&volume(corners))
 }
 
-fn determinant(u: &[Rational; 3], v: &[Rational; 3], w: &[Rational; 3]) -> Rational {
-    let minor = |y: usize, z: usize| &(&v[y] * &w[z]) - &(&v[z] * &w[y]);
-    [(0, 1, 2), (1, 2, 0), (2, 0, 1)].into_iter().map(|(x, y, z)| &u[x] * &minor(y, z)).sum()
+/// Six times the volume of a tetrahedron.
+fn volume<T: Scalar>([a, b, c, d]: [Point; 4]) -> T {
+    let step = |p: Point| -> [T; 3] { std::array::from_fn(|i| T::from_f64(p[i]).minus(&T::from_f64(a[i]))) };
+    let [u, v, w] = [step(b), step(c), step(d)];
+    let minor = |y: usize, z: usize| v[y].times(&w[z]).minus(&v[z].times(&w[y]));
+    u[0].times(&minor(1, 2)).plus(&u[1].times(&minor(2, 0))).plus(&u[2].times(&minor(0, 1)))
 }

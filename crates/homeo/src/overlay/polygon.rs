@@ -1,105 +1,120 @@
-//! Convex polygons in a middle triangle, exactly.
+//! Convex polygons, exactly.
 
-use homeo_core::number::{Interval, Rational, Scalar};
+use homeo_core::number::{Interval, Lazy, Rational, Scalar};
 use homeo_core::predicate::Sign;
 
-/// A point of a middle triangle: the weights of the prism's second and third column.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Place {
-    pub exact: [Rational; 2],
-    near: [Interval; 2],
+/// On which edges of triangles a side of a polygon lies, by the corners opposite to them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Edges {
+    /// Of the source's triangle.
+    pub of_source: Option<u8>,
+    /// Of the section's triangle.
+    pub of_section: Option<u8>,
 }
 
-/// A corner of a polygon that lies in a triangle of a surface.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Corner {
-    pub place: Place,
-    /// The weights of that triangle's corners.
-    pub weights: [Rational; 3],
-}
-
-impl Place {
-    pub fn new(exact: [Rational; 2]) -> Self {
-        Self { near: exact.each_ref().map(Interval::around), exact }
-    }
-
-    pub fn on_middle(&self) -> [Rational; 3] {
-        let [a, b] = self.exact.clone();
-        [&(&Rational::ONE - &a) - &b, a, b]
-    }
-
-    /// The ends of its box in floating point.
-    pub fn bounds(&self) -> [[f64; 2]; 2] {
-        [self.near.each_ref().map(Interval::low), self.near.each_ref().map(Interval::high)]
+impl Edges {
+    /// What either knows.
+    fn and(self, other: Self) -> Self {
+        Self { of_source: self.of_source.or(other.of_source), of_section: self.of_section.or(other.of_section) }
     }
 }
 
-/// Twice the area of the triangle of three points.
-fn turn<T: Scalar>(a: &[T; 2], b: &[T; 2], p: &[T; 2]) -> T {
-    let (u, v) = ([b[0].minus(&a[0]), b[1].minus(&a[1])], [p[0].minus(&a[0]), p[1].minus(&a[1])]);
-    u[0].times(&v[1]).minus(&u[1].times(&v[0]))
+/// A corner of a polygon in some affine coordinates, and the side from it to the next corner.
+#[derive(Clone, Debug)]
+pub(super) struct Corner<const N: usize> {
+    pub at: [Lazy; N],
+    pub side: Edges,
+    /// Whether the last cut made it.
+    pub is_new: bool,
 }
 
-/// On which side of the line from `a` to `b` a point lies; positive on the left.
-fn side(a: &Place, b: &Place, p: &Place) -> Sign {
-    turn(&a.near, &b.near, &p.near).sign().unwrap_or_else(|| turn(&a.exact, &b.exact, &p.exact).sign())
+/// A place in a middle triangle: the weights of the prism's columns.
+pub(super) type Place = [Lazy; 3];
+
+/// Twice the area of the triangle of three places, that of the whole middle triangle being 1.
+pub(super) fn turn(a: &Place, b: &Place, c: &Place) -> Lazy {
+    formula([a, b, c].map(Clone::clone), determinant::<Interval>, determinant::<Rational>)
 }
 
-/// Twice the area of a polygon.
-pub(super) fn doubled_area<'n>(corners: impl IntoIterator<Item = [&'n Rational; 2]>) -> Rational {
-    let corners: Vec<[&Rational; 2]> = corners.into_iter().collect();
-    let Some((first, rest)) = corners.split_first() else { return Rational::ZERO };
-    let from_first = |p: &[&Rational; 2]| [p[0] - first[0], p[1] - first[1]];
-    let steps: Vec<[Rational; 2]> = rest.iter().map(from_first).collect();
-    steps.windows(2).map(|pair| &(&pair[0][0] * &pair[1][1]) - &(&pair[0][1] * &pair[1][0])).sum()
+fn determinant<T: Scalar>([a, b, c]: &[[T; 3]; 3]) -> T {
+    let minor = |y: usize, z: usize| b[y].times(&c[z]).minus(&b[z].times(&c[y]));
+    a[0].times(&minor(1, 2)).plus(&a[1].times(&minor(2, 0))).plus(&a[2].times(&minor(0, 1)))
 }
 
-/// The part of a convex polygon in another one, both counter-clockwise, with the first one's weights; empty without an
-/// area.
-pub(super) fn intersection(polygon: &[Corner], other: &[Corner]) -> Vec<Corner> {
+/// The value of a formula, for lazy numbers.
+fn formula<const M: usize, const N: usize>(
+    numbers: [[Lazy; N]; M],
+    near: fn(&[[Interval; N]; M]) -> Interval,
+    exact: fn(&[[Rational; N]; M]) -> Rational,
+) -> Lazy {
+    let around = near(&numbers.each_ref().map(|row| row.each_ref().map(Lazy::interval)));
+    Lazy::of_formula(around, move || exact(&numbers.each_ref().map(|row| row.each_ref().map(|x| x.exact().clone()))))
+}
+
+/// Twice the area of a convex polygon.
+pub(super) fn doubled_area(corners: &[&Place]) -> Lazy {
+    let fan = corners.windows(2).skip(1).map(|pair| turn(corners[0], pair[0], pair[1]));
+    fan.fold(Lazy::from_f64(0.0), |sum, area| sum.plus(&area))
+}
+
+/// The part of a convex polygon in another one, both counter-clockwise; empty without an area.
+pub(super) fn intersection(polygon: &[Corner<3>], other: &[Corner<3>]) -> Vec<Corner<3>> {
     let mut rest = polygon.to_vec();
     for (k, from) in other.iter().enumerate() {
-        let to = &other[(k + 1) % other.len()].place;
-        let sides: Vec<Sign> = rest.iter().map(|corner| side(&from.place, to, &corner.place)).collect();
-        let height = |corner: &Corner| turn(&from.place.exact, &to.exact, &corner.place.exact);
-        let Some(kept) = clipped(rest, &sides, height) else { return Vec::new() };
+        let to = &other[(k + 1) % other.len()].at;
+        let heights: Vec<Lazy> = rest.iter().map(|corner| turn(&from.at, to, &corner.at)).collect();
+        let sides: Vec<Sign> = heights.iter().map(Lazy::certain_sign).collect();
+        let Some(kept) = clipped(rest, &sides, &heights, from.side) else { return Vec::new() };
         rest = kept;
     }
     rest
 }
 
-/// The part of a convex polygon on the closed positive side of a line, given the signs and, where needed, the exact heights
-/// of its corners; `None` if it has no area. The sides of the polygon may be straight in between.
-pub(super) fn clipped(
-    corners: Vec<Corner>,
-    sides: &[Sign],
-    height: impl Fn(&Corner) -> Rational,
-) -> Option<Vec<Corner>> {
-    if !sides.contains(&Sign::Positive) {
+/// The part of a convex polygon on the closed positive side of a line that lies on some edges, given the heights of its
+/// corners over the line and their signs; `None` if it has no area.
+pub(super) fn clipped<const N: usize>(
+    corners: Vec<Corner<N>>,
+    signs: &[Sign],
+    heights: &[Lazy],
+    line: Edges,
+) -> Option<Vec<Corner<N>>> {
+    use Sign::{Negative, Positive, Zero};
+    if !signs.contains(&Positive) {
         return None;
     }
-    if !sides.contains(&Sign::Negative) {
-        return Some(corners);
-    }
+    let old = |corner: &Corner<N>| Corner { is_new: false, ..corner.clone() };
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (k, corner) in corners.iter().enumerate() {
         let next = (k + 1) % corners.len();
-        if sides[k] != Sign::Negative {
-            kept.push(corner.clone());
-        }
-        if matches!((sides[k], sides[next]), (Sign::Positive, Sign::Negative) | (Sign::Negative, Sign::Positive)) {
-            kept.push(between(corner, &corners[next], &height(corner), &height(&corners[next])));
+        let crossing = || between([corner, &corners[next]], [&heights[k], &heights[next]]);
+        match (signs[k], signs[next]) {
+            // The side goes on along the line.
+            (Zero, Zero) => kept.push(Corner { side: corner.side.and(line), ..old(corner) }),
+            (Zero, Negative) => kept.push(Corner { side: line, ..old(corner) }),
+            (Positive, Negative) => {
+                kept.push(old(corner));
+                kept.push(Corner { at: crossing(), side: line, is_new: true });
+            }
+            (Negative, Positive) => kept.push(Corner { at: crossing(), side: corner.side, is_new: true }),
+            (Negative, _) => {}
+            _ => kept.push(old(corner)),
         }
     }
     (kept.len() >= 3).then_some(kept)
 }
 
 /// The point between two corners where the height, linear, is zero.
-fn between(a: &Corner, b: &Corner, height_a: &Rational, height_b: &Rational) -> Corner {
-    let share = height_a / &(height_a - height_b);
-    let mix = |x: &Rational, y: &Rational| x + &(&share * &(y - x));
-    Corner {
-        place: Place::new([0, 1].map(|axis| mix(&a.place.exact[axis], &b.place.exact[axis]))),
-        weights: [0, 1, 2].map(|k| mix(&a.weights[k], &b.weights[k])),
-    }
+fn between<const N: usize>([a, b]: [&Corner<N>; 2], heights: [&Lazy; 2]) -> [Lazy; N] {
+    std::array::from_fn(|i| {
+        let numbers = [[&a.at[i], heights[0]].map(Clone::clone), [&b.at[i], heights[1]].map(Clone::clone)];
+        if numbers.iter().all(|[at, _]| at.is_plainly(0.0)) {
+            return Lazy::from_f64(0.0);
+        }
+        formula(numbers, at_zero::<Interval>, at_zero::<Rational>)
+    })
+}
+
+/// The value where the height is zero, given value and height at two points.
+fn at_zero<T: Scalar>([[a, height_a], [b, height_b]]: &[[T; 2]; 2]) -> T {
+    a.plus(&height_a.divide(&height_a.minus(height_b)).times(&b.minus(a)))
 }

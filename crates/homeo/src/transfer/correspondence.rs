@@ -2,10 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use homeo_core::number::Rational;
+use homeo_core::mesh::VertexId;
+use homeo_core::number::{Interval, Scalar};
+use homeo_core::predicate::Sign;
+use rayon::prelude::*;
 
 use crate::input::SourceMesh;
-use crate::map::Shell;
+use crate::map::{Shell, SurfacePoint};
 use crate::overlay::{Cell, for_each_cell};
 use crate::progress::Progress;
 
@@ -40,7 +43,8 @@ pub(super) struct Part {
 /// An edge of the source: a triangle and the corner opposite to it.
 pub(super) type Side = (u32, usize);
 
-/// See the module's documentation. Places and areas were exact before they were rounded.
+/// See the module's documentation. Where a sign decides, it was exact; places and areas are
+/// rounded.
 pub(super) struct Correspondence<'s> {
     pub source: &'s SourceMesh<3>,
     pub section: &'s SourceMesh<3>,
@@ -56,45 +60,44 @@ impl<'s> Correspondence<'s> {
     /// `None` when stopped.
     pub fn new(shell: &'s Shell, section: &'s SourceMesh<3>, progress: &(dyn Progress + Sync)) -> Option<Self> {
         let count = section.complex().cell_count();
-        let mut shares: Vec<BTreeMap<u32, [Rational; 2]>> = vec![BTreeMap::new(); count];
-        let (mut corners, mut crossed) = (vec![[None; 3]; count], vec![BTreeSet::new(); count]);
+        let mut shares: Vec<BTreeMap<u32, [f64; 2]>> = vec![BTreeMap::new(); count];
+        let mut crossed = vec![BTreeSet::new(); count];
         let is_complete = for_each_cell(shell, progress, |cell| {
             let triangle = cell.section as usize;
-            let parts = shares[triangle].entry(cell.source).or_insert([Rational::ZERO, Rational::ZERO]);
-            *parts = [&parts[0] + &cell.share_of_source(), &parts[1] + &cell.share_of_section()];
-            corners_in(&cell, &mut corners[triangle]);
+            let parts = shares[triangle].entry(cell.source).or_insert([0.0; 2]);
+            *parts = [parts[0] + cell.share_of_source().near(), parts[1] + cell.share_of_section().near()];
             crossed[triangle].extend(sides_inside(&cell));
         });
-        let part = |(source, [of_source, of_section]): (u32, [Rational; 2])| Part {
-            source,
-            of_source: of_source.to_f64(),
-            of_section: of_section.to_f64(),
-        };
-        let parts = shares.into_iter().map(|parts| parts.into_iter().map(part).collect()).collect();
-        is_complete.then_some(Self { source: shell.source(), section, corners, parts, crossed })
+        if !is_complete {
+            return None;
+        }
+        let part = |(source, [of_source, of_section]): (u32, [f64; 2])| Part { source, of_source, of_section };
+        let parts: Vec<Vec<Part>> = shares.into_iter().map(|parts| parts.into_iter().map(part).collect()).collect();
+        let places: Vec<Option<SurfacePoint<Interval>>> =
+            section.positions().par_iter().map(|&place| shell.on_source(place).ok()).collect();
+        let source = shell.source();
+        let corner = |t: usize, v: usize| seen_from_inside(source, places[v].as_ref()?, &parts[t]);
+        let cells = section.complex().cells().iter().enumerate();
+        let corners = cells.map(|(t, cell)| cell.map(|v| corner(t, v.index()))).collect();
+        Some(Self { source, section, corners, parts, crossed })
     }
 }
 
-/// Notes where corners of the section's triangle are.
-fn corners_in(cell: &Cell, found: &mut [Option<At>; 3]) {
-    for corner in &cell.corners {
-        let Some(k) = corner.on_section.iter().position(|weight| *weight == Rational::ONE) else { continue };
-        let here = At { triangle: cell.source, weights: corner.on_source.each_ref().map(Rational::to_f64) };
-        // A triangle of which the corner is a corner comes first: its value needs no rounding.
-        if found[k].is_none_or(|before: At| before.corner().is_none() && here.corner().is_some()) {
-            found[k] = Some(here);
-        }
-    }
+/// A point of the source as one of a triangle that lies under a triangle of the section: one of several where the point
+/// lies on an edge or is a vertex.
+fn seen_from_inside(source: &SourceMesh<3>, at: &SurfacePoint<Interval>, parts: &[Part]) -> Option<At> {
+    let cells = source.complex().cells();
+    let is_held = |k: usize| !at.weights[k].sign().is_some_and(|sign| sign == Sign::Zero);
+    let held: Vec<(VertexId, f64)> =
+        (0..3).filter(|&k| is_held(k)).map(|k| (cells[at.triangle as usize][k], at.weights[k].near())).collect();
+    let has_all = |part: &&Part| held.iter().all(|(v, _)| cells[part.source as usize].contains(v));
+    let triangle = parts.iter().find(has_all)?.source;
+    let weight = |v: VertexId| held.iter().find(|(other, _)| *other == v).map_or(0.0, |(_, weight)| *weight);
+    Some(At { triangle, weights: cells[triangle as usize].map(weight) })
 }
 
 /// The sides of a cell that lie on an edge of the source, and not on one of the section.
 fn sides_inside(cell: &Cell) -> impl Iterator<Item = Side> + '_ {
-    let count = cell.corners.len();
-    (0..count).filter_map(move |k| {
-        let ends = [&cell.corners[k], &cell.corners[(k + 1) % count]];
-        let common = |weights: [&[Rational; 3]; 2]| (0..3).find(|&i| weights.iter().all(|w| w[i].is_zero()));
-        let on_section = common(ends.map(|end| &end.on_section));
-        let opposite = common(ends.map(|end| &end.on_source))?;
-        on_section.is_none().then_some((cell.source, opposite))
-    })
+    let inside = cell.sides.iter().filter(|side| side.of_section.is_none());
+    inside.filter_map(|side| Some((cell.source, usize::from(side.of_source?))))
 }

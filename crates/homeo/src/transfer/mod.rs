@@ -3,9 +3,9 @@
 //! Theorem:     the map from source to section is a homeomorphism, and its [overlay](crate::overlay) says exactly which
 //!              point of the source each vertex of the section is, and how much of each triangle lies over which other.
 //! Source:      Jiang, Schneider, Zorin, Panozzo 2020 (doi 10.1145/3414685.3417769), section 4.
-//! Differences: values are not sampled: places and areas are exact rationals, rounded once at the end; every value has
-//!              a [`Status`].
-//! Arithmetic:  exact places and shares; values are combined in doubles.
+//! Differences: values are not sampled: which triangle a vertex lies on, and which triangles lie over one another, is
+//!              decided exactly; every value has a [`Status`].
+//! Arithmetic:  exact decisions; places, areas and values are rounded, at the end.
 //! Cost:        that of the overlay.
 
 mod correspondence;

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use homeo::map::Shell;
 use homeo::overlay::{Cell, for_each_cell, shares};
 use homeo::progress::{Progress, Silent};
-use homeo_core::number::Rational;
+use homeo_core::number::{Lazy, Rational, Scalar};
+use homeo_core::predicate::Sign;
 
 use crate::shells::{Surface, built, singular, sphere};
 
@@ -20,10 +21,11 @@ fn check(shell: &Shell, section_triangles: usize) {
     let shares = shares(shell, &Silent).expect("nobody stops it");
     let (mut of_source, mut of_section) = (BTreeMap::new(), BTreeMap::new());
     for share in &shares {
-        assert!(share.of_source > Rational::ZERO && share.of_section > Rational::ZERO, "{share:?}");
-        let add = |sums: &mut BTreeMap<u32, Rational>, key: u32, part: &Rational| {
-            let sum = sums.entry(key).or_insert(Rational::ZERO);
-            *sum = &*sum + part;
+        let is_positive = |part: &Lazy| part.certain_sign() == Sign::Positive;
+        assert!(is_positive(&share.of_source) && is_positive(&share.of_section), "{share:?}");
+        let add = |sums: &mut BTreeMap<u32, Lazy>, key: u32, part: &Lazy| {
+            let sum = sums.entry(key).or_insert_with(|| Lazy::from_f64(0.0));
+            *sum = sum.plus(part);
         };
         add(&mut of_source, share.source, &share.of_source);
         add(&mut of_section, share.section, &share.of_section);
@@ -31,27 +33,36 @@ fn check(shell: &Shell, section_triangles: usize) {
     assert_eq!(of_source.len(), shell.source().complex().cell_count(), "every triangle of the source is met");
     assert_eq!(of_section.len(), section_triangles, "every triangle of the section is met");
     for (triangle, sum) in of_source.iter().chain(&of_section) {
-        assert_eq!(*sum, Rational::ONE, "the shares of triangle {triangle}");
+        assert_eq!(*sum.exact(), Rational::ONE, "the shares of triangle {triangle}");
     }
     cells_of(shell).iter().step_by(7).for_each(|cell| check_corners(shell, cell));
 }
 
 /// The map takes each corner on the source to the one on the section, through the one on the middle surface.
 fn check_corners(shell: &Shell, cell: &Cell) {
-    for corner in &cell.corners {
+    for (corner, next) in cell.corners.iter().zip(cell.corners.iter().cycle().skip(1)) {
+        let side = &cell.sides[cell.corners.iter().position(|other| other == corner).expect("it is one of them")];
+        for (edge, ends) in [
+            (side.of_source, [corner, next].map(|end| cell.on_source(end))),
+            (side.of_section, [corner, next].map(|end| cell.on_section(end))),
+        ] {
+            let on_edge: Vec<u8> = (0..3).filter(|&k| ends.iter().all(|end| end[usize::from(k)].is_zero())).collect();
+            assert_eq!(edge.into_iter().collect::<Vec<u8>>(), on_edge, "the edge on which a side lies");
+        }
+        let (on_source, on_section) = (cell.on_source(corner), cell.on_section(corner));
         let source = shell.source();
         let triangle = source.complex().cells()[cell.source as usize];
         let point: [Rational; 3] = std::array::from_fn(|axis| {
             let exact = |k: usize| crate::points::exact(source.positions()[triangle[k].index()])[axis].clone();
-            (0..3).map(|k| &corner.on_source[k] * &exact(k)).sum()
+            (0..3).map(|k| on_source[k].exact() * &exact(k)).sum()
         });
         let at = shell.project_exact(&point).expect("on the source");
         if at.prism == cell.prism {
-            assert_eq!(at.weights, corner.on_middle, "on the middle surface");
+            assert_eq!(at.weights.each_ref(), corner.each_ref().map(Lazy::exact), "on the middle surface");
         }
         let image = shell.to_section_exact(&at).expect("on the section");
         if image.triangle == cell.section {
-            assert_eq!(image.weights, corner.on_section, "on the section");
+            assert_eq!(image.weights.each_ref(), on_section.each_ref().map(Lazy::exact), "on the section");
         }
     }
 }
@@ -101,6 +112,7 @@ fn shares_of_an_invalid_shell_do_not_add_up() {
     positions[3] = positions[3].map(|x| 3.0 * x);
     let moved = homeo::input::SourceMesh::new(positions, shell.source().complex().clone());
     let broken = Shell::from_parts(moved, shell.parts().clone());
-    let total: Rational = shares(&broken, &Silent).expect("nobody stops it").into_iter().map(|s| s.of_source).sum();
+    let shares = shares(&broken, &Silent).expect("nobody stops it");
+    let total: Rational = shares.iter().map(|share| share.of_source.exact().clone()).sum();
     assert_ne!(total, Rational::from(broken.source().complex().cell_count() as i64));
 }

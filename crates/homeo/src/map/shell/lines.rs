@@ -3,11 +3,12 @@
 //! Each step is stated once; with [`Interval`](homeo_core::number::Interval) it stops with `Undecided` where rounding
 //! leaves a sign open, and the caller asks again with rationals. So fast and exact images never differ in a branch.
 
-use homeo_core::number::Scalar;
+use homeo_core::number::{Interval, Scalar};
 use homeo_core::predicate::Sign;
 use homeo_core::spatial::Aabb;
 
-use super::space::{Undecided, combination, crossing, point_of, sum, weights_in, zero};
+use super::space::{Undecided, combination, crossing, point_of, possible_crossing, sum, weights_in, zero};
+use super::surface::hull;
 use super::{Shell, ShellEvaluationError, ShellPoint, ShellSurface, SurfacePoint};
 
 /// Why there is no answer.
@@ -147,15 +148,18 @@ impl Shell {
 
     /// The point of a section on a pillar line.
     pub(super) fn meet<T: Scalar>(&self, surface: &ShellSurface, line: &Fibre<T>) -> Result<SurfacePoint<T>, Stop> {
-        let near: Vec<[f64; 3]> = line.iter().map(|p| p.each_ref().map(T::near)).collect();
-        let candidates = surface.near(&near);
+        let candidates = surface.near(line);
         if let [pinched] = line.as_slice() {
-            return surface.at_vertex(&candidates, near[0], pinched).ok_or(ShellEvaluationError::Outside.into());
+            return surface
+                .at_vertex(&candidates, pinched.each_ref().map(T::near), pinched)
+                .ok_or(ShellEvaluationError::Outside.into());
         }
+        let boxes: Vec<Aabb> = line.windows(2).map(hull).collect();
         let mut is_open = false;
         for triangle in candidates {
+            let place = Aabb::of(&surface.corners(triangle));
             let corners = surface.corners(triangle).map(point_of);
-            for ends in line.windows(2) {
+            for (ends, _) in line.windows(2).zip(&boxes).filter(|(_, region)| region.meets(&place)) {
                 match crossing([&ends[0], &ends[1]], &corners) {
                     Ok(None) => {}
                     Ok(Some(weights)) => {
@@ -168,6 +172,27 @@ impl Shell {
             }
         }
         Err(if is_open { Stop::Undecided } else { ShellEvaluationError::Outside.into() })
+    }
+
+    /// An enclosure of the point of a section on a pillar line, also where it is open which of several triangles has it: the
+    /// certificate says that the line meets the section once. `None` where nothing good is known.
+    pub(super) fn enclose(surface: &ShellSurface, line: &Fibre<Interval>) -> Option<[Interval; 3]> {
+        let boxes: Vec<Aabb> = line.windows(2).map(hull).collect();
+        let mut met: Option<[Interval; 3]> = None;
+        for triangle in surface.near(line) {
+            let place = Aabb::of(&surface.corners(triangle));
+            let corners = surface.corners(triangle).map(point_of);
+            for (ends, _) in line.windows(2).zip(&boxes).filter(|(_, region)| region.meets(&place)) {
+                if let Some(weights) = possible_crossing([&ends[0], &ends[1]], &corners).ok()? {
+                    let point = combination(&weights, &corners);
+                    met = Some(match met {
+                        None => point,
+                        Some(known) => std::array::from_fn(|axis| known[axis].hull_with(&point[axis])),
+                    });
+                }
+            }
+        }
+        met
     }
 
     /// The positions, in a prism, of its columns in ascending order of their numbers.

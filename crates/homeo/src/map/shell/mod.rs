@@ -97,7 +97,7 @@ pub struct Shell {
 }
 
 /// Part of the shell's size.
-const ACCURACY: f64 = 1e-12;
+const ACCURACY: f64 = 1e-10;
 
 impl Shell {
     /// Joins the data of a shell. What they must satisfy is checked by the certificate, not here.
@@ -250,7 +250,7 @@ impl Shell {
     /// # Errors
     /// As for [`project_exact`](Self::project_exact) and [`to_source_exact`](Self::to_source_exact).
     pub fn to_source(&self, point: Point) -> Result<Enclosed, ShellEvaluationError> {
-        self.on_source(point).map(|met| enclosure(&met.point))
+        self.enclose_on(&self.source, point)
     }
 
     /// The triangle of the source on the pillar line of a point, and where in it, enclosed.
@@ -267,7 +267,7 @@ impl Shell {
     /// As for [`to_source`](Self::to_source).
     pub fn to_section(&self, point: Point) -> Result<Enclosed, ShellEvaluationError> {
         match &self.section {
-            Some(section) => self.meet_closely(section, point).map(|met| enclosure(&met.point)),
+            Some(section) => self.enclose_on(section, point),
             None => self.to_middle(point),
         }
     }
@@ -307,6 +307,16 @@ impl Shell {
             weights: exact.weights.each_ref().map(Interval::around),
             point: exact.point.each_ref().map(Interval::around),
         })
+    }
+
+    /// The point where the pillar line of a point meets a surface.
+    fn enclose_on(&self, surface: &ShellSurface, point: Point) -> Result<Enclosed, ShellEvaluationError> {
+        let line = self.fibre(&self.project(point)?).ok().filter(|line| line.len() > 1);
+        let near = line.and_then(|line| Self::enclose(surface, &line)).map(|image| enclosure(&image));
+        match near.filter(|near| near.radius <= self.accuracy) {
+            Some(near) => Ok(near),
+            None => self.meet_closely(surface, point).map(|met| enclosure(&met.point)),
+        }
     }
 
     fn meet_exactly(

@@ -77,25 +77,51 @@ pub(super) fn weights_in<T: Scalar>(corners: &[[T; 3]; 4], point: &[T; 3]) -> Re
 }
 
 /// The weights in a triangle of the point where a segment, not parallel to it, meets it.
-pub(super) fn crossing<T: Scalar>(
-    [from, to]: [&[T; 3]; 2],
+pub(super) fn crossing<T: Scalar>(ends: [&[T; 3]; 2], corners: &[[T; 3]; 3]) -> Result<Option<[T; 3]>, Undecided> {
+    let Some(meeting) = Meeting::new(ends, corners)? else { return Ok(None) };
+    Ok(if meeting.is_inside().ok_or(Undecided)? { Some(meeting.weights()) } else { None })
+}
+
+/// The same, also where it is open whether the point lies on the segment and in the triangle.
+pub(super) fn possible_crossing<T: Scalar>(
+    ends: [&[T; 3]; 2],
     corners: &[[T; 3]; 3],
 ) -> Result<Option<[T; 3]>, Undecided> {
-    let (u, v) = (difference(&corners[1], &corners[0]), difference(&corners[2], &corners[0]));
-    let (step, base) = (difference(to, from), difference(from, &corners[0]));
-    // base + t step = x u + y v
-    let speed = determinant(&u, &v, &step);
-    let (t, x, y) = (determinant(&u, &v, &base), determinant(&base, &v, &step), determinant(&u, &base, &step));
-    let (speed, t, x, y) = match speed.sign().ok_or(Undecided)? {
-        Sign::Zero => return Ok(None),
-        Sign::Positive => (speed, negative(&t), x, y),
-        Sign::Negative => (negative(&speed), t, negative(&x), negative(&y)),
-    };
-    let rest = speed.minus(&x).minus(&y);
-    let after = speed.minus(&t);
-    match are_at_least_zero([&t, &after, &x, &y, &rest]) {
-        Some(false) => Ok(None),
-        Some(true) => Ok(Some([rest, x, y].map(|part| part.divide(&speed)))),
-        None => Err(Undecided),
+    let Some(meeting) = Meeting::new(ends, corners)? else { return Ok(None) };
+    Ok(if meeting.is_inside() == Some(false) { None } else { Some(meeting.weights()) })
+}
+
+/// Where a line meets a plane.
+struct Meeting<T> {
+    /// The share of the segment before it, and the weights of the triangle's second and third corner, times the speed.
+    parts: [T; 3],
+    /// How fast the segment goes through the plane; positive.
+    speed: T,
+}
+
+impl<T: Scalar> Meeting<T> {
+    /// `None` for parallel ones.
+    fn new([from, to]: [&[T; 3]; 2], corners: &[[T; 3]; 3]) -> Result<Option<Self>, Undecided> {
+        let (u, v) = (difference(&corners[1], &corners[0]), difference(&corners[2], &corners[0]));
+        let (step, base) = (difference(to, from), difference(from, &corners[0]));
+        // base + t step = x u + y v
+        let speed = determinant(&u, &v, &step);
+        let (t, x, y) = (determinant(&u, &v, &base), determinant(&base, &v, &step), determinant(&u, &base, &step));
+        Ok(match speed.sign().ok_or(Undecided)? {
+            Sign::Zero => None,
+            Sign::Positive => Some(Self { parts: [negative(&t), x, y], speed }),
+            Sign::Negative => Some(Self { parts: [t, negative(&x), negative(&y)], speed: negative(&speed) }),
+        })
+    }
+
+    /// Whether it lies on the segment and in the triangle; `None` where that is open.
+    fn is_inside(&self) -> Option<bool> {
+        let [t, x, y] = &self.parts;
+        are_at_least_zero([t, &self.speed.minus(t), x, y, &self.speed.minus(x).minus(y)])
+    }
+
+    fn weights(&self) -> [T; 3] {
+        let [_, x, y] = &self.parts;
+        [self.speed.minus(x).minus(y), x.clone(), y.clone()].map(|part| part.divide(&self.speed))
     }
 }

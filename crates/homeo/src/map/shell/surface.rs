@@ -9,6 +9,15 @@ use crate::input::SourceMesh;
 
 type Point = [f64; 3];
 
+/// A box that holds some points.
+pub(super) fn hull<T: Scalar>(points: &[[T; 3]]) -> Aabb {
+    let ends = points.iter().flat_map(|point| {
+        let ends = point.each_ref().map(T::enclosure);
+        [ends.map(|end| end.low()), ends.map(|end| end.high())]
+    });
+    Aabb::of(&ends.collect::<Vec<_>>())
+}
+
 #[derive(Debug)]
 pub(crate) struct ShellSurface {
     pub mesh: SourceMesh<3>,
@@ -26,10 +35,9 @@ impl ShellSurface {
         self.mesh.complex().cells()[triangle as usize].map(|v| self.mesh.positions()[v.index()])
     }
 
-    /// The triangles whose boxes meet that of some rounded points, ascending.
-    pub fn near(&self, points: &[Point]) -> Vec<u32> {
-        let hull = Aabb::of(points);
-        let region = Aabb { low: hull.low.map(f64::next_down), high: hull.high.map(f64::next_up) };
+    /// The triangles whose boxes meet that of some points, ascending.
+    pub fn near<T: Scalar>(&self, points: &[[T; 3]]) -> Vec<u32> {
+        let region = hull(points);
         let mut candidates = Vec::new();
         self.tree.query_box(&region, |t| candidates.push(t as u32));
         candidates.sort_unstable();
