@@ -12,6 +12,9 @@ use serde_json::Value;
 const N: usize = 16;
 const M: usize = 8;
 
+/// Of totals: areas of thin cells are middles of intervals, which are wider than a last digit.
+const ROUNDING: f64 = 1e-8;
+
 /// The torus, its texture cut along both loops: a grid on the unit square.
 fn textured() -> String {
     let plain = torus(N, M);
@@ -361,10 +364,13 @@ fn masses_are_conserved_and_every_value_has_a_status() {
     let report = folder.line(line).expect(0).json();
     let small = mesh(&folder, "s.vtu");
     let last = mass(&small, &numbers(&small, "load", Element::Polygon));
-    assert!((last / first - 1.0).abs() < 1e-12, "{last} instead of {first}");
+    assert!((last / first - 1.0).abs() < ROUNDING, "{last} instead of {first}");
     let means = numbers(&small, "mean", Element::Polygon);
     assert!(means.iter().all(|mean| (1.0..=17.0).contains(mean)));
-    assert!((mass(&small, &means) / first - 1.0).abs() > 1e-12, "the area changes, so averages keep no total");
+    assert!(
+        (mass(&small, &means) / first - 1.0).abs() > 100.0 * ROUNDING,
+        "the area changes, so averages keep no total"
+    );
     for name in ["load", "mean"] {
         let status = numbers(&small, &format!("{name}_status"), Element::Polygon);
         for (number, word) in ["copied", "interpolated", "largest", "split", "missing"].iter().enumerate() {
@@ -379,7 +385,7 @@ fn masses_are_conserved_and_every_value_has_a_status() {
     assert_eq!(back.polygons, mesh(&folder, "t.vtu").polygons);
     assert_eq!(back.positions, mesh(&folder, "t.vtu").positions);
     let again = mass(&back, &numbers(&back, "load", Element::Polygon));
-    assert!((again / first - 1.0).abs() < 1e-12, "{again} instead of {first}");
+    assert!((again / first - 1.0).abs() < ROUNDING, "{again} instead of {first}");
     for density in ["nothing", "load_status"] {
         let line = format!("transfer s.homeo --from s.vtu --inverse --density {density} -o no.vtu --json -q");
         assert_eq!(folder.line(&line).expect(3).json()["error"]["code"], "no-density", "{density}");
