@@ -2,32 +2,8 @@
 
 mod common;
 
-use common::{CLOSED, Folder, cubes, quads};
+use common::{CLOSED, Folder, cubes, quads, rationals, torus, vertices};
 use homeo_core::number::Rational;
-
-/// A bumpy torus of `n` by `m` quads cut into triangles, as OBJ; its coordinates are multiples of 1/1024.
-fn torus(n: usize, m: usize) -> String {
-    let mut text = String::new();
-    let turn = |i: usize, n: usize| std::f64::consts::TAU * i as f64 / n as f64;
-    for i in 0..n {
-        for j in 0..m {
-            let (u, v) = (turn(i, n), turn(j, m));
-            let radius = 0.4 * (1.0 + 0.2 * (3.0 * u + 2.0 * v).sin());
-            let across = 1.0 + radius * v.cos();
-            let [x, y, z] =
-                [across * u.cos(), across * u.sin(), radius * v.sin()].map(|x| (x * 1024.0).round() / 1024.0);
-            text.push_str(&format!("v {x} {y} {z}\n"));
-        }
-    }
-    for i in 0..n {
-        for j in 0..m {
-            let corner = |i: usize, j: usize| i % n * m + j % m + 1;
-            let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
-            text.push_str(&format!("f {a} {b} {c}\nf {a} {c} {d}\n"));
-        }
-    }
-    text
-}
 
 /// The boundary of four cubes in a chain round a point at which no direction leaves the surface, as OBJ.
 fn singular() -> String {
@@ -57,17 +33,6 @@ fn singular() -> String {
         }
     }
     text
-}
-
-/// The vertices of an OBJ file as a table of points.
-fn vertices(obj: &str) -> String {
-    let rows = obj.lines().filter_map(|line| line.strip_prefix("v "));
-    rows.fold("x,y,z\n".to_owned(), |text, row| text + &row.replace(' ', ",") + "\n")
-}
-
-fn rationals(table: &str) -> Vec<Rational> {
-    let numbers = table.lines().skip(1).flat_map(|row| row.split(','));
-    numbers.map(|x| x.parse().unwrap()).collect()
 }
 
 #[test]

@@ -3,23 +3,28 @@
 use homeo::map::Shell;
 use homeo::progress::Progress;
 use homeo::transfer::{Status, TransferError, Transferred, transfer};
-use homeo_core::io::{Attribute, MeshFile, Values};
+use homeo_core::io::{Attribute, Values};
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, Result};
 use crate::session::Session;
 use crate::text::Lines;
 
-/// Moves all attributes of a file to the section of a shell.
+/// Moves attributes to the section of a shell. Where there are none, the overlay is not made.
 ///
 /// # Errors
 /// When a density is none, or the run was stopped.
-pub fn moved(session: &Session, shell: &Shell, file: &MeshFile, densities: &[String]) -> Result<Vec<Transferred>> {
-    if file.attributes.is_empty() && densities.is_empty() {
+pub fn moved(
+    session: &Session,
+    shell: &Shell,
+    attributes: &[Attribute],
+    densities: &[String],
+) -> Result<Vec<Transferred>> {
+    if attributes.is_empty() && densities.is_empty() {
         return Ok(Vec::new());
     }
     session.stage("transfer");
-    let moved = transfer(shell, &file.attributes, densities, session).map_err(|error| match error {
+    let moved = transfer(shell, attributes, densities, session).map_err(|error| match error {
         TransferError::NoDensity(_) => Failure::input("no-density", error.to_string()),
         TransferError::Cancelled => session.stopped(),
         TransferError::Rows { .. } | TransferError::NoSection => Failure::bug(error.to_string()),

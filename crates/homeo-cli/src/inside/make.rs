@@ -4,11 +4,12 @@ use std::path::Path;
 
 use homeo::certificate::Provenance;
 use homeo::construct::section::{
-    self, RemeshParams, SectionError, SimplifyEnd, SimplifyParams, Texture, TexturedSurface,
+    self, Refusals, RemeshParams, SectionError, SimplifyEnd, SimplifyParams, Texture, TexturedSurface,
 };
 use homeo::construct::shell::ShellParams;
 use homeo::map::Shell;
 use homeo::progress::Progress;
+use homeo_core::io::Element;
 use homeo_verify::Claim;
 use serde_json::{Value, json};
 
@@ -45,14 +46,22 @@ pub fn simplify(session: &Session, options: &SimplifyArgs, outputs: &mut Outputs
         let mut lines = Lines::default();
         let share = 100.0 * info.triangles as f64 / first.max(1) as f64;
         lines.add("triangles", format!("{} of {first} ({share:.1} %)", info.triangles));
-        if info.end == SimplifyEnd::Exhausted && info.triangles > params.triangles {
-            lines.add("ended", "no edge is left that could be collapsed in this shell");
+        // Without a number the error ends it, as it should.
+        let reached = options.to.map(|_| info.end == SimplifyEnd::Reached);
+        if reached == Some(false) {
+            let within = if options.error.is_some() { "shell with this error" } else { "shell" };
+            lines.add("ended", format!("no edge is left that could be collapsed in this {within}"));
+            let Refusals { links, shape, shell, texture } = info.refusals;
+            lines.add(
+                "refused",
+                format!("{shell} by the shell, {texture} by the texture, {shape} by shape, {links} by links"),
+            );
         }
         lines.add("error", format!("{:.2e} at most (root of the mean squared distance to planes)", info.largest_error));
         let refused = info.refusals;
         let quality = json!({
             "triangles": info.triangles, "first_triangles": first, "collapses": info.collapses,
-            "largest_error": info.largest_error, "reached": info.end == SimplifyEnd::Reached,
+            "largest_error": info.largest_error, "reached": reached,
             "refused": {"links": refused.links, "shape": refused.shape, "shell": refused.shell, "texture": refused.texture},
         });
         Ok(Made { section, quality, lines })
@@ -107,19 +116,29 @@ fn run(
     session.stage("check");
     let source = source_mesh(&mesh.file, shell::unfit(session, &mesh, options.triangulate)?);
     let params = ShellParams { thickness: options.thickness, ..ShellParams::default() };
-    let shell = shell::construct(session, &source, &params)?.shell;
+    let shell = shell::construct_in_time(session, &source, &params)?;
     let carried = texture::of_file(&mesh.file);
+    if carried.is_none() && mesh.file.attribute("texture", Element::Corner).is_some() {
+        session.display().note(
+            "the texture has corners without coordinates, or not two of them each: its seams are not kept, its values are moved",
+        );
+    }
     let start = TexturedSurface { surface: source, texture: carried.as_ref().map(|(texture, _)| texture.clone()) };
     let made = make(&shell, &start, options.features.map(f64::to_radians))?;
     session.check()?;
     let shell = shell.with_section(made.section.surface.clone());
     let provenance = provenance(options, construction);
     let claim = certify(session, &shell, &provenance, targets.map, outputs)?;
-    let mut moved = attributes::moved(session, &shell, &mesh.file, &options.density)?;
-    if let (Some(texture), Some((_, like))) = (&made.section.texture, &carried) {
-        let place =
-            moved.iter_mut().find(|moved| moved.attribute.name == like.name && moved.attribute.element == like.element);
-        place.into_iter().for_each(|moved| *moved = texture::carried(texture, like));
+    // The construction itself carried the texture; the others are looked for on the source.
+    let mut others = mesh.file.attributes.clone();
+    let carried = carried.zip(made.section.texture.as_ref()).map(|((_, like), texture)| {
+        let place = mesh.file.attributes.iter().position(|other| std::ptr::eq(other, like)).unwrap_or(0);
+        others.remove(place);
+        (place, texture::carried(texture, like))
+    });
+    let mut moved = attributes::moved(session, &shell, &others, &options.density)?;
+    if let Some((place, texture)) = carried {
+        moved.insert(place.min(moved.len()), texture);
     }
     let textures = (start.texture.as_ref(), made.section.texture.as_ref());
     let described = attributes::described(&moved);

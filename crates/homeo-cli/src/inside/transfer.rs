@@ -6,7 +6,7 @@ use homeo::certificate::{Provenance, StoredMap};
 use homeo::input::SourceMesh;
 use homeo::map::Shell;
 use homeo::progress::Progress;
-use homeo_verify::{Claim, Verdict, verify_bytes};
+use homeo_verify::{Claim, Verdict, Witness, verify_bytes};
 use serde_json::json;
 
 use super::{Targets, attributes, mesh_file, stage_mesh};
@@ -33,7 +33,7 @@ pub fn run(session: &Session, options: &TransferArgs, outputs: &mut Outputs) -> 
     let (shell, claim) = joined(session, options, shell, claim)?;
     let from = read(session, options, &options.from)?;
     require_same(&options.from, &source_of(&from)?, shell.source())?;
-    let moved = attributes::moved(session, &shell, &from.file, &options.density)?;
+    let moved = attributes::moved(session, &shell, &from.file.attributes, &options.density)?;
     if moved.is_empty() {
         session.display().note(&format!("{} has no attributes to transfer", options.from.display()));
     }
@@ -98,14 +98,29 @@ fn certified(session: &Session, options: &TransferArgs, shell: &Shell) -> Result
     let claim = match verify_bytes(bytes.get_ref()) {
         Ok(Verdict::Certified(claim)) => claim,
         Ok(Verdict::Refuted(witness)) => {
-            let message = format!("{what} is no section of the shell: {}", proof::witness_text(&witness));
-            return Err(Failure::input("no-section", message).with("witness", proof::witness_json(&witness)));
+            return Err(no_section_because(shell, &what.to_string(), &witness));
         }
         Ok(Verdict::Undecided(obstacle)) => return Err(proof::undecided(&obstacle)),
         Err(error) => return Err(Failure::bug(error.to_string())),
     };
     session.check()?;
     Ok(claim)
+}
+
+/// Says which elements of the surface's own file are concerned; a witness counts them after those of source and shell.
+fn no_section_because(shell: &Shell, what: &str, witness: &Witness) -> Failure {
+    let own = |numbers: &[u32], first: usize| -> Vec<u32> {
+        numbers.iter().filter_map(|&number| number.checked_sub(first as u32)).collect()
+    };
+    let (source, parts) = (shell.source(), shell.parts());
+    let triangles = own(&witness.cells, source.complex().cell_count() + parts.prisms.len());
+    let vertices = own(&witness.vertices, source.positions().len() + parts.middle.len());
+    let message = format!(
+        "{what} is no section of the shell, at its triangles {triangles:?} with the vertices {vertices:?}: {}",
+        proof::witness_text(witness)
+    );
+    let elements = json!({"triangles": triangles, "vertices": vertices});
+    Failure::input("no-section", message).with("witness", proof::witness_json(witness)).with("elements", elements)
 }
 
 fn read(session: &Session, options: &TransferArgs, path: &Path) -> Result<MeshInput> {

@@ -79,8 +79,8 @@ fn check_outputs(options: &ShellArgs, layers: &[std::path::PathBuf]) -> Result<(
 }
 
 /// A shell, and how it came about.
-pub struct Made {
-    pub shell: Shell,
+struct Made {
+    shell: Shell,
     info: ShellInfo,
     /// The time limit ended its simplification.
     was_cut_short: bool,
@@ -113,7 +113,7 @@ impl Progress for Simplifying<'_> {
 ///
 /// # Errors
 /// When there is none within the limits.
-pub fn construct(session: &Session, source: &SourceMesh<3>, params: &ShellParams) -> Result<Made> {
+fn construct(session: &Session, source: &SourceMesh<3>, params: &ShellParams) -> Result<Made> {
     let progress = Simplifying { session, has_shell: Cell::new(false), was_cut_short: Cell::new(false) };
     let (shell, info) = build(source, params, &progress).map_err(|error| explain(session, &error))?;
     session.lift_time_limit();
@@ -127,6 +127,16 @@ pub fn construct(session: &Session, source: &SourceMesh<3>, params: &ShellParams
         ));
     }
     Ok(Made { shell, info, was_cut_short })
+}
+
+/// Builds a shell that others go on with; the time limit ends the run.
+///
+/// # Errors
+/// When there is none within the limits.
+pub fn construct_in_time(session: &Session, source: &SourceMesh<3>, params: &ShellParams) -> Result<Shell> {
+    let (shell, _) = build(source, params, session).map_err(|error| explain(session, &error))?;
+    session.check()?;
+    Ok(shell)
 }
 
 fn explain(session: &Session, error: &ShellError) -> Failure {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use homeo_core::number::Rational;
 use serde_json::Value;
 
 /// A folder that goes away with the test.
@@ -162,3 +163,38 @@ pub fn quads(n: usize) -> String {
 
 /// The surface of a tetrahedron, as OFF.
 pub const CLOSED: &str = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+
+/// A bumpy torus of `n` by `m` quads cut into triangles, as OBJ; its coordinates are multiples of 1/1024.
+pub fn torus(n: usize, m: usize) -> String {
+    let mut text = String::new();
+    let turn = |i: usize, n: usize| std::f64::consts::TAU * i as f64 / n as f64;
+    for i in 0..n {
+        for j in 0..m {
+            let (u, v) = (turn(i, n), turn(j, m));
+            let radius = 0.4 * (1.0 + 0.2 * (3.0 * u + 2.0 * v).sin());
+            let across = 1.0 + radius * v.cos();
+            let [x, y, z] =
+                [across * u.cos(), across * u.sin(), radius * v.sin()].map(|x| (x * 1024.0).round() / 1024.0);
+            text.push_str(&format!("v {x} {y} {z}\n"));
+        }
+    }
+    for i in 0..n {
+        for j in 0..m {
+            let corner = |i: usize, j: usize| i % n * m + j % m + 1;
+            let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+            text.push_str(&format!("f {a} {b} {c}\nf {a} {c} {d}\n"));
+        }
+    }
+    text
+}
+
+/// The vertices of an OBJ file as a table of points.
+pub fn vertices(obj: &str) -> String {
+    let rows = obj.lines().filter_map(|line| line.strip_prefix("v "));
+    rows.fold("x,y,z\n".to_owned(), |text, row| text + &row.replace(' ', ",") + "\n")
+}
+
+pub fn rationals(table: &str) -> Vec<Rational> {
+    let numbers = table.lines().skip(1).flat_map(|row| row.split(','));
+    numbers.map(|x| x.parse().unwrap()).collect()
+}
