@@ -12,8 +12,8 @@ use serde_json::Value;
 const N: usize = 16;
 const M: usize = 8;
 
-/// Of totals: areas of thin cells are middles of intervals, which are wider than a last digit.
-const ROUNDING: f64 = 1e-8;
+/// Of totals.
+const ROUNDING: f64 = 1e-12;
 
 /// The torus, its texture cut along both loops: a grid on the unit square.
 fn textured() -> String {

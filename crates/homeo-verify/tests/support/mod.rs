@@ -10,6 +10,9 @@ pub mod write;
 
 use serde_json::{Value, json};
 
+/// Points and triangles.
+pub type Rows = (Vec<Vec<f64>>, Vec<Vec<u32>>);
+
 /// A map file in memory. Rows are vectors, so that mutations can make them ragged in count, not in width.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
@@ -26,7 +29,7 @@ pub struct Map {
     pub levels: [Vec<Vec<f64>>; 3],
     pub prisms: Vec<Vec<u32>>,
     /// Another section of a shell: points and triangles.
-    pub section: Option<(Vec<Vec<f64>>, Vec<Vec<u32>>)>,
+    pub section: Option<Rows>,
 }
 
 #[derive(Clone, Debug, PartialEq)]

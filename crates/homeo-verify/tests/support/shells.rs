@@ -300,7 +300,7 @@ struct Exact {
 
 /// Whether a shell is valid, and has the counts and the hash that its manifest states.
 pub fn is_valid(map: &Map) -> bool {
-    let as_source = |(positions, cells): &(Vec<Vec<f64>>, Vec<Vec<u32>>)| {
+    let as_source = |(positions, cells): &super::Rows| {
         let mut other = Map { positions: positions.clone(), source_cells: cells.clone(), section: None, ..map.clone() };
         other.sign();
         other

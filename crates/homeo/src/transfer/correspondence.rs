@@ -71,6 +71,7 @@ impl<'s> Correspondence<'s> {
         if !is_complete {
             return None;
         }
+        normalize(&mut shares, shell.source().complex().cell_count());
         let part = |(source, [of_source, of_section]): (u32, [f64; 2])| Part { source, of_source, of_section };
         let parts: Vec<Vec<Part>> = shares.into_iter().map(|parts| parts.into_iter().map(part).collect()).collect();
         let places: Vec<Option<SurfacePoint<Interval>>> =
@@ -83,11 +84,23 @@ impl<'s> Correspondence<'s> {
     }
 }
 
+/// Divides rounded shares by their sums, which are exactly 1 before rounding: so nothing is lost or doubled in total.
+fn normalize(shares: &mut [BTreeMap<u32, [f64; 2]>], source_count: usize) {
+    let mut of_source = vec![0.0; source_count];
+    shares.iter().flatten().for_each(|(&source, share)| of_source[source as usize] += share[0]);
+    for parts in shares {
+        let of_section: f64 = parts.values().map(|share| share[1]).sum();
+        for (&source, share) in parts {
+            *share = [share[0] / of_source[source as usize], share[1] / of_section];
+        }
+    }
+}
+
 /// A point of the source as one of a triangle that lies under a triangle of the section: one of several where the point
 /// lies on an edge or is a vertex.
 fn seen_from_inside(source: &SourceMesh<3>, at: &SurfacePoint<Interval>, parts: &[Part]) -> Option<At> {
     let cells = source.complex().cells();
-    let is_held = |k: usize| !at.weights[k].sign().is_some_and(|sign| sign == Sign::Zero);
+    let is_held = |k: usize| at.weights[k].sign().is_none_or(|sign| sign != Sign::Zero);
     let held: Vec<(VertexId, f64)> =
         (0..3).filter(|&k| is_held(k)).map(|k| (cells[at.triangle as usize][k], at.weights[k].near())).collect();
     let has_all = |part: &&Part| held.iter().all(|(v, _)| cells[part.source as usize].contains(v));

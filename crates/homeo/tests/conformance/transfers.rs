@@ -126,7 +126,11 @@ fn textures_are_taken_from_the_own_side_of_a_seam() {
     let moved = moved(&shell, attribute("texture", Element::Corner, 2, Values::F64(values.clone())), &[]);
     let section = shell.section().expect("it has one");
     let split = moved.count(Status::Split);
-    assert!(split > 0 && split % 3 == 0 && split < moved.status.len() / 2, "{split} of {}", moved.status.len());
+    assert!(
+        split > 0 && split.is_multiple_of(3) && split < moved.status.len() / 2,
+        "{split} of {}",
+        moved.status.len()
+    );
     assert_eq!(moved.count(Status::Missing), 0);
     for (row, uv) in doubles(&moved).chunks_exact(2).enumerate() {
         let v = section.complex().cells()[row / 3][row % 3];
