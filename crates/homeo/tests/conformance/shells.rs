@@ -63,10 +63,19 @@ pub fn sphere(levels: usize) -> Surface {
 
 /// Four cubes in a chain round a point whose link is no star: no direction leaves the surface there.
 pub fn singular() -> Surface {
-    let cubes = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]];
+    cubes(&[[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]])
+}
+
+/// A fifth cube makes the next corner such a point too: no prism bears both.
+pub fn singular_neighbours() -> Surface {
+    cubes(&[[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1], [2, 1, 1]])
+}
+
+/// The surface of a union of cubes.
+fn cubes(cubes: &[[i32; 3]]) -> Surface {
     let mut numbers: HashMap<[i32; 3], u32> = HashMap::new();
     let mut surface = Surface { positions: Vec::new(), triangles: Vec::new() };
-    for cube in cubes {
+    for &cube in cubes {
         for axis in 0..3 {
             for side in [0, 1] {
                 let mut beyond = cube;
@@ -192,6 +201,17 @@ fn simplified_shell_of_a_sphere() {
 #[test]
 fn first_shell_at_a_singular_vertex() {
     check(&singular(), 0);
+}
+
+#[test]
+fn shells_at_singular_neighbours() {
+    check(&singular_neighbours(), 0);
+    check(&singular_neighbours(), 30);
+    let pinched = |surface: &Surface| {
+        let parts = built(surface, 0).parts().clone();
+        (0..parts.middle.len()).filter(|&v| parts.bottom[v] == parts.top[v]).count()
+    };
+    assert_eq!([pinched(&singular()), pinched(&singular_neighbours())], [1, 2]);
 }
 
 #[test]

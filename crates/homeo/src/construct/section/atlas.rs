@@ -129,7 +129,8 @@ impl Atlas {
         self.orientation(marks, place) == self.signs[chart as usize]
     }
 
-    /// The first texture at the point over which a point of the shell lies, and its chart: the triangle is certain, the place rounded.
+    /// The first texture at the point over which a point of the shell lies, and its chart: the triangle is certain, the
+    /// place rounded.
     pub fn first_texture(&self, point: Point) -> Option<(u32, Place)> {
         let First { shell, corners, charts } = &self.first;
         let at = shell.on_source(point).ok()?;

@@ -104,9 +104,9 @@ pub(super) struct Layer {
 }
 
 impl Layer {
-    /// The layer of the given columns over the triangles of the source, nothing checked yet.
-    pub fn new(source: &SourceMesh<3>, columns: Vec<Column>) -> Self {
-        let prisms: Vec<[u32; 3]> = source.complex().cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
+    /// The layer of the given columns over the triangles of `base`, which is the source or nearly so; nothing checked yet.
+    pub fn new(source: &SourceMesh<3>, base: &SourceMesh<3>, columns: Vec<Column>) -> Self {
+        let prisms: Vec<[u32; 3]> = base.complex().cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
         let mut boundary: HashSet<[u32; 2]> = prisms.iter().flat_map(|&p| sides(p)).collect();
         let all: Vec<[u32; 2]> = boundary.iter().copied().collect();
         for [a, b] in all {
@@ -123,7 +123,7 @@ impl Layer {
             is_frozen,
             columns,
             exists: vec![true; prisms.len()],
-            around: triangles_around(source.complex()),
+            around: triangles_around(base.complex()),
             contents: vec![Vec::new(); prisms.len()],
             prisms,
         }

@@ -7,9 +7,11 @@
 //!              columns are fixed; directions by the point of a convex hull nearest to the origin.
 //! Arithmetic:  every accepted operation is decided by exact signs; directions, lengths and energies only guide.
 //! Cost:        about proportional to the triangles, times what a prism comes to hold.
-//! Fails when:  the surface crosses or touches itself, or two singular vertices are neighbours -> [`ShellError`].
+//! Fails when:  the surface crosses or touches itself, or two singular vertices are neighbours on the boundary
+//!              -> [`ShellError`].
 //! See:         `docs/theory/shells.md`.
 
+mod base;
 pub(in crate::construct) mod directions;
 pub(in crate::construct) mod layer;
 pub(in crate::construct) mod prism;
@@ -19,7 +21,7 @@ use crate::input::SourceMesh;
 use crate::map::Shell;
 use crate::progress::Progress;
 
-use directions::extrusion_directions;
+use base::Base;
 use layer::Layer;
 use prism::{Column, Failure, FailureIn};
 
@@ -99,9 +101,9 @@ pub fn build(
     }
     let target = params.thickness * longest_side(source.positions());
     progress.stage("directions");
-    let directions = extrusion_directions(source.complex(), source.positions());
+    let mut base = Base::new(source);
     progress.stage("thickness");
-    let mut layer = first_layer(source, &directions, target, progress)?;
+    let mut layer = first_layer(source, &mut base, target, progress)?;
     let mut info = ShellInfo {
         pinched: (0..layer.columns.len() as u32)
             .filter(|&v| !layer.around[v as usize].is_empty() && layer.is_pinched(v))
@@ -126,19 +128,54 @@ fn longest_side(positions: &[[f64; 3]]) -> f64 {
 /// theorem's hypotheses fail.
 ///
 /// Prisms are positive everywhere before the surface near any of them is looked at: the one needs a few signs, the other
-/// many, and most halvings come from the first. Then all prisms that changed are filled at a time.
+/// many, and most halvings come from the first. Then all prisms that changed are filled at a time. Where a column has to be
+/// given up beside one without length, the edge between them is split, and it begins again.
 fn first_layer(
     source: &SourceMesh<3>,
-    directions: &[Option<[f64; 3]>],
+    base: &mut Base,
     target: f64,
     progress: &dyn Progress,
 ) -> Result<Layer, ShellError> {
-    let mut thinning = Thinning::new(source, directions, first_lengths(source, target));
+    for _ in 0..MOST_BEGINNINGS {
+        let stuck = match thinned(source, base, target, progress)? {
+            Thinned::Layer(layer) => return Ok(*layer),
+            Thinned::Stuck(stuck) => stuck,
+        };
+        if base.split(&stuck.edges) == 0 {
+            return Err(ShellError::Stuck { triangle: stuck.triangle, reason: reason(stuck.failure) });
+        }
+    }
+    let reason = "short columns keep meeting";
+    Err(ShellError::Stuck { triangle: 0, reason })
+}
+
+/// How often the first layer is begun anew, with more edges split, before it is given up.
+const MOST_BEGINNINGS: usize = 6;
+
+/// What shortening columns leads to.
+enum Thinned {
+    Layer(Box<Layer>),
+    Stuck(Stuck),
+}
+
+/// A column is too short, and a neighbour has no length.
+struct Stuck {
+    /// The triangle of the source.
+    triangle: u32,
+    failure: Failure,
+    /// The edges to such neighbours.
+    edges: Vec<[u32; 2]>,
+}
+
+fn thinned(source: &SourceMesh<3>, base: &Base, target: f64, progress: &dyn Progress) -> Result<Thinned, ShellError> {
+    let mut thinning = Thinning::new(source, base, first_lengths(&base.mesh, target));
     loop {
-        thinning.make_positive(progress)?;
+        if let Some(stuck) = thinning.make_positive(progress)? {
+            return Ok(Thinned::Stuck(stuck));
+        }
         let unfilled: Vec<u32> = (0..).zip(&thinning.is_filled).filter(|(_, full)| !**full).map(|(p, _)| p).collect();
         if unfilled.is_empty() {
-            return Ok(thinning.layer);
+            return Ok(Thinned::Layer(Box::new(thinning.layer)));
         }
         let mut failures = Vec::new();
         for some in unfilled.chunks(FILLED_AT_A_TIME) {
@@ -151,8 +188,10 @@ fn first_layer(
         failures.iter().for_each(|&(prism, _)| thinning.is_filled[prism as usize] = false);
         for (prism, failure) in failures {
             // Not if a neighbour has just been given shorter columns: that may do.
-            if !thinning.is_waiting[prism as usize] {
-                thinning.shorten(prism, failure)?;
+            if !thinning.is_waiting[prism as usize]
+                && let Some(stuck) = thinning.shorten(prism, failure)
+            {
+                return Ok(Thinned::Stuck(stuck));
             }
         }
     }
@@ -163,8 +202,7 @@ const FILLED_AT_A_TIME: usize = 4096;
 
 /// The first layer while its columns become shorter.
 struct Thinning<'a> {
-    source: &'a SourceMesh<3>,
-    directions: &'a [Option<[f64; 3]>],
+    base: &'a Base,
     /// How long the columns were at first, on either side.
     lengths: Vec<f64>,
     /// How long they are, below and above.
@@ -178,14 +216,13 @@ struct Thinning<'a> {
 }
 
 impl<'a> Thinning<'a> {
-    fn new(source: &'a SourceMesh<3>, directions: &'a [Option<[f64; 3]>], lengths: Vec<f64>) -> Self {
+    fn new(source: &SourceMesh<3>, base: &'a Base, lengths: Vec<f64>) -> Self {
         let reaches: Vec<[f64; 2]> = lengths.iter().map(|&length| [length; 2]).collect();
-        let columns = (0..).zip(&reaches).map(|(v, &reach)| column(source, directions, v, reach)).collect();
-        let layer = Layer::new(source, columns);
+        let columns = (0..).zip(&reaches).map(|(v, &reach)| column(base, v, reach)).collect();
+        let layer = Layer::new(source, &base.mesh, columns);
         let count = layer.prisms.len();
         Self {
-            source,
-            directions,
+            base,
             lengths,
             reaches,
             layer,
@@ -196,35 +233,40 @@ impl<'a> Thinning<'a> {
     }
 
     /// Shortens columns until all prisms satisfy L2.
-    fn make_positive(&mut self, progress: &dyn Progress) -> Result<(), ShellError> {
+    fn make_positive(&mut self, progress: &dyn Progress) -> Result<Option<Stuck>, ShellError> {
         while let Some(prism) = self.waiting.pop() {
             self.is_waiting[prism as usize] = false;
             let Err(failure) = self.layer.check_volumes(prism) else { continue };
             if progress.is_cancelled() {
                 return Err(ShellError::Cancelled);
             }
-            self.shorten(prism, failure)?;
+            if let Some(stuck) = self.shorten(prism, failure) {
+                return Ok(Some(stuck));
+            }
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Halves the longest columns of a prism in the slab in which something fails; the prisms round them wait.
-    fn shorten(&mut self, prism: u32, (failure, slab): FailureIn) -> Result<(), ShellError> {
+    /// `Some` if one of them becomes too short beside a neighbour without length.
+    fn shorten(&mut self, prism: u32, (failure, slab): FailureIn) -> Option<Stuck> {
         let corners = self.layer.prisms[prism as usize];
         // The longest ones: short ones do less harm, and a fan of thin triangles would wear them out.
         let longest = corners.iter().map(|&v| self.reaches[v as usize][slab]).fold(0.0, f64::max);
         for v in corners.map(|v| v as usize) {
             if self.reaches[v][slab] > 0.6 * longest {
                 self.reaches[v][slab] /= 2.0;
-                self.layer.columns[v] = column(self.source, self.directions, v, self.reaches[v]);
+                self.layer.columns[v] = column(self.base, v, self.reaches[v]);
             }
             if self.reaches[v][slab] < SHORTEST * self.lengths[v] {
                 // Too short to be of use: without thickness, if the prisms round it can bear that.
-                let mut others = self.layer.around[v].iter().flat_map(|&p| self.layer.prisms[p as usize]);
-                if others.any(|other| self.layer.is_pinched(other)) {
-                    return Err(ShellError::Stuck { triangle: prism, reason: reason(failure) });
+                let neighbours = self.layer.neighbours(v as u32).into_iter();
+                let pinched: Vec<u32> = neighbours.filter(|&other| self.layer.is_pinched(other)).collect();
+                if !pinched.is_empty() || self.layer.is_pinched(v as u32) {
+                    let edges = pinched.into_iter().map(|other| [v as u32, other]).collect();
+                    return Some(Stuck { triangle: self.base.parents[prism as usize], failure, edges });
                 }
-                self.layer.columns[v] = [self.source.positions()[v]; 3];
+                self.layer.columns[v] = [self.base.mesh.positions()[v]; 3];
                 self.reaches[v] = [0.0; 2];
             }
         }
@@ -235,14 +277,14 @@ impl<'a> Thinning<'a> {
                 self.waiting.push(touched);
             }
         }
-        Ok(())
+        None
     }
 }
 
 /// The column of a vertex of the source, as long as wanted below and above; without length at a singular one.
-fn column(source: &SourceMesh<3>, directions: &[Option<[f64; 3]>], v: usize, reach: [f64; 2]) -> Column {
-    let middle = source.positions()[v];
-    let moved = |by: f64| match directions[v] {
+fn column(base: &Base, v: usize, reach: [f64; 2]) -> Column {
+    let middle = base.mesh.positions()[v];
+    let moved = |by: f64| match base.directions[v] {
         Some(direction) => [0, 1, 2].map(|axis| middle[axis] + by * direction[axis]),
         None => middle,
     };
@@ -251,7 +293,7 @@ fn column(source: &SourceMesh<3>, directions: &[Option<[f64; 3]>], v: usize, rea
 
 fn reason(failure: Failure) -> &'static str {
     match failure {
-        Failure::Volume => "its prism does not become positive, as where singular vertices are neighbours",
+        Failure::Volume => "its prism does not become positive",
         Failure::Cap => "the surface comes too close to itself",
         Failure::Crossing => "a triangle near it is crossed the wrong way",
         Failure::Wall => "the surface comes too close to its boundary",
