@@ -20,9 +20,10 @@ pub(super) struct At {
 }
 
 impl At {
-    /// The corner that the point is, if it is one.
+    /// The corner that the point is, if it is one. A weight that is only nearly 1 may be rounded to it; the others are then
+    /// not zero.
     pub fn corner(&self) -> Option<usize> {
-        self.weights.iter().position(|&weight| weight == 1.0)
+        (0..3).find(|&k| (0..3).all(|i| self.weights[i] == if i == k { 1.0 } else { 0.0 }))
     }
 
     /// The corner with the largest weight, the first of equals.
