@@ -54,6 +54,23 @@ pub(super) fn by_area(known: &Correspondence, attribute: &Attribute) -> Transfer
     Transferred { status: status.collect(), attribute: Attribute { values, ..attribute.clone() } }
 }
 
+/// The one value that all triangles have, on so many others.
+pub(super) fn everywhere(attribute: &Attribute, count: usize) -> Transferred {
+    fn repeated<T: Clone>(values: &[T], row: usize, count: usize) -> Vec<T> {
+        values[..row].iter().cloned().cycle().take(row * count).collect()
+    }
+    let n = attribute.components;
+    let values = match &attribute.values {
+        Values::F64(v) => Values::F64(repeated(v, n, count)),
+        Values::F32(v) => Values::F32(repeated(v, n, count)),
+        Values::I64(v) => Values::I64(repeated(v, n, count)),
+        Values::Text(v) => Values::Text(repeated(v, n, count)),
+    };
+    let is_missing = count > 0 && has_no_number(&values, n, 0);
+    let status = if is_missing { Status::Missing } else { Status::Copied };
+    Transferred { attribute: Attribute { values, ..attribute.clone() }, status: vec![status; count] }
+}
+
 /// The row of labels with the largest area; the first of equals.
 fn largest<L: Clone + PartialEq>(labels: &[L], n: usize, parts: &[Part], missing: L) -> Vec<L> {
     let mut areas: Vec<(&[L], f64)> = Vec::new();

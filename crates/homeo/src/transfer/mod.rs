@@ -104,7 +104,7 @@ pub enum TransferError {
 /// See [`TransferError`].
 ///
 /// # Complexity
-/// That of the [overlay](crate::overlay::for_each_cell).
+/// That of the [overlay](crate::overlay::for_each_cell); linear if all attributes have one value on all triangles.
 pub fn transfer(
     shell: &Shell,
     attributes: &[Attribute],
@@ -120,13 +120,27 @@ pub fn transfer(
     if let Some(name) = densities.iter().find(|name| !named(name)) {
         return Err(TransferError::NoDensity(name.clone()));
     }
-    let known = Correspondence::new(shell, section, progress).ok_or(TransferError::Cancelled)?;
-    let moved = |attribute: &Attribute| match attribute.element {
-        Element::Vertex => Some(points::at_vertices(&known, attribute)),
-        Element::Corner => Some(points::at_corners(&known, attribute)),
-        Element::Polygon if densities.contains(&attribute.name) => Some(faces::by_mass(&known, attribute)),
-        Element::Polygon => Some(faces::by_area(&known, attribute)),
-        Element::Tetrahedron => None,
+    // What is the same on all triangles, as the only material of a model, needs no knowledge of places.
+    let is_plain = |attribute: &Attribute| {
+        let count = shell.source().complex().cell_count();
+        let is_averaged = attribute.element == Element::Polygon && !densities.contains(&attribute.name);
+        is_averaged && count > 0 && (1..count).all(|row| is_same_row(attribute, 0, row))
+    };
+    let known = if attributes.iter().all(is_plain) {
+        None
+    } else {
+        Some(Correspondence::new(shell, section, progress).ok_or(TransferError::Cancelled)?)
+    };
+    let moved = |attribute: &Attribute| match (attribute.element, &known) {
+        (Element::Tetrahedron, _) => None,
+        _ if is_plain(attribute) => Some(faces::everywhere(attribute, section.complex().cell_count())),
+        (_, None) => None, // all are plain
+        (Element::Vertex, Some(known)) => Some(points::at_vertices(known, attribute)),
+        (Element::Corner, Some(known)) => Some(points::at_corners(known, attribute)),
+        (Element::Polygon, Some(known)) if densities.contains(&attribute.name) => {
+            Some(faces::by_mass(known, attribute))
+        }
+        (Element::Polygon, Some(known)) => Some(faces::by_area(known, attribute)),
     };
     Ok(attributes.iter().filter_map(moved).collect())
 }
