@@ -9,8 +9,9 @@
 mod support;
 
 use homeo_verify::{Verdict, verify_bytes};
+use serde_json::json;
 use std::time::{Duration, Instant};
-use support::{Map, build, random::Random, write};
+use support::{Map, build, random::Random, shells, write};
 
 /// The largest resident memory so far in kilobytes, where the system tells (Linux).
 fn peak_kilobytes() -> f64 {
@@ -84,7 +85,7 @@ fn mutant(random: &mut Random, map: &Map) -> Vec<u8> {
 fn main() {
     let seconds: u64 = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(10);
     let seed = std::env::args().nth(2).and_then(|text| text.parse().ok()).unwrap_or(1);
-    let (maps, mut random) = (build::all_maps(), Random(seed));
+    let (maps, mut random) = (all_maps(), Random(seed));
     let (start, mut executions, mut answers) = (Instant::now(), 0u64, [0u64; 4]);
     let (mut slowest, mut largest, before) = (Duration::ZERO, 0, peak_kilobytes());
     while start.elapsed() < Duration::from_secs(seconds) {
@@ -105,6 +106,18 @@ fn main() {
     println!("certified {}, refuted {}, undecided {}, unreadable {}", answers[0], answers[1], answers[2], answers[3]);
     let growth = peak_kilobytes() - before;
     println!("peak memory grew by {growth} kB over all executions; the largest file had {} kB", largest / 1024);
+}
+
+/// Maps of every kind: onto standard shapes, shells, and shells with another section.
+fn all_maps() -> Vec<(&'static str, Map)> {
+    let mut maps = build::all_maps();
+    for (name, shell) in shells::all_shells() {
+        let mut onto_itself = shell.clone();
+        onto_itself.section = Some((shell.positions.clone(), shell.source_cells.clone()));
+        onto_itself.manifest["target"] = json!("section");
+        maps.extend([(name, shell), (name, onto_itself)]);
+    }
+    maps
 }
 
 fn random_map(maps: &[(&'static str, Map)], execution: u64) -> Map {

@@ -26,6 +26,9 @@ struct Node {
     exact: OnceLock<Rational>,
 }
 
+/// What `near` is allowed to miss, relative to the number.
+const LARGEST_RADIUS: f64 = 1e-9;
+
 /// How a number comes about.
 #[derive(Debug)]
 enum Rule {
@@ -162,6 +165,12 @@ impl Scalar for Lazy {
     fn enclosure(&self) -> Interval {
         self.interval()
     }
+
+    /// Of a wide interval the middle says nothing: then the exact value is rounded.
+    fn near(&self) -> f64 {
+        let (middle, radius) = self.interval().middle_and_radius();
+        if radius <= LARGEST_RADIUS * middle.abs() { middle } else { self.exact().to_f64() }
+    }
 }
 
 impl PartialEq for Lazy {
@@ -192,6 +201,17 @@ mod tests {
             }
         }
         assert_eq!(count, 512);
+    }
+
+    #[test]
+    fn what_is_near_is_near_also_where_the_interval_says_nothing() {
+        let [one, tiny] = [1.0, 1e-20].map(Lazy::from_f64);
+        let left = one.plus(&tiny).minus(&one);
+        assert!(left.interval().low() < 0.0, "the interval cannot tell");
+        assert_eq!(left.near(), 1e-20);
+        let quotient = tiny.divide(&left);
+        assert_eq!(quotient.interval(), Interval::WHOLE, "a divisor that may be zero");
+        assert_eq!(quotient.near(), 1.0);
     }
 
     #[test]

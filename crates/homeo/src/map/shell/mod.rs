@@ -298,7 +298,10 @@ impl Shell {
     ) -> Result<SurfacePoint<Interval>, ShellEvaluationError> {
         let at = self.project(point)?;
         let met = self.fibre(&at).map_err(Stop::from).and_then(|line| self.meet(surface, &line));
-        if let Some(met) = met.ok().filter(|met| enclosure(&met.point).radius <= self.accuracy) {
+        // In a thin triangle the point may be certain and its weights not.
+        let are_sharp = |met: &SurfacePoint<Interval>| enclosure(&met.weights).radius <= ACCURACY;
+        let is_sharp = |met: &SurfacePoint<Interval>| enclosure(&met.point).radius <= self.accuracy && are_sharp(met);
+        if let Some(met) = met.ok().filter(is_sharp) {
             return Ok(met);
         }
         let exact = self.meet_exactly(surface, &self.project_exact(&exactly(point))?)?;
