@@ -133,7 +133,7 @@ impl Layer {
         is_pinched(self.columns[column as usize])
     }
 
-    fn prism(&self, corners: [u32; 3]) -> Prism {
+    pub fn prism(&self, corners: [u32; 3]) -> Prism {
         Prism::new(corners.map(|v| self.columns[v as usize]))
     }
 

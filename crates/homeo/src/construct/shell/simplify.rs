@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::directions::{dot, minus};
 use super::layer::{Layer, area_and_sides};
+use super::prism::{Column, Failure};
 use crate::progress::Progress;
 
 /// Middle triangles with a larger energy are not made, unless there were such before.
@@ -70,8 +71,58 @@ fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
     if worst_energy(layer, new.iter().copied()) > before.max(LARGEST_ENERGY) {
         return false;
     }
-    layer.replace(&old, &new).is_ok()
+    match layer.replace(&old, &new) {
+        Ok(()) => true,
+        Err((Failure::Volume, _)) => collapse_thinner(layer, gone, kept, &new),
+        Err(_) => false,
+    }
 }
+
+/// The same where the `new` prisms are not positive: with shorter columns.
+///
+/// Columns that lean, as they do along sharp edges, make prisms positive only if they are short beside the triangles'
+/// heights, and growth has made them as long as they could be.
+fn collapse_thinner(layer: &mut Layer, gone: u32, kept: u32, new: &[[u32; 3]]) -> bool {
+    let mut shorter: Vec<(u32, Column)> = Vec::new();
+    let is_positive = new.iter().all(|&corners| shorten(layer, corners, &mut shorter));
+    // A column that became shorter for one prism may spoil another.
+    let holds = is_positive && new.iter().all(|&corners| layer.prism(corners).check_volumes().is_ok()) && {
+        let mut old: Vec<u32> = shorter.iter().flat_map(|(column, _)| &layer.around[*column as usize]).copied().collect();
+        old.extend(&layer.around[gone as usize]);
+        old.sort_unstable();
+        old.dedup();
+        let moved = old.iter().map(|&prism| layer.prisms[prism as usize].map(|v| if v == gone { kept } else { v }));
+        let new: Vec<[u32; 3]> = moved.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        layer.replace(&old, &new).is_ok()
+    };
+    if !holds {
+        for (column, before) in shorter.into_iter().rev() {
+            layer.columns[column as usize] = before;
+        }
+    }
+    holds
+}
+
+/// Halves the longest columns of a prism until it is positive; `shorter` gets those that change, with what they were.
+fn shorten(layer: &mut Layer, corners: [u32; 3], shorter: &mut Vec<(u32, Column)>) -> bool {
+    for _ in 0..MOST_HALVINGS {
+        let Err((_, slab)) = layer.prism(corners).check_volumes() else { return true };
+        let level = 2 * slab;
+        let longest = corners.iter().map(|&v| reach(layer, v, level)).fold(0.0, f64::max);
+        for column in corners {
+            if is_free(layer, column) && reach(layer, column, level) > 0.6 * longest {
+                let before = layer.columns[column as usize];
+                shorter.push((column, before));
+                layer.columns[column as usize][level] =
+                    [0, 1, 2].map(|axis| 0.5 * (before[1][axis] + before[level][axis]));
+            }
+        }
+    }
+    false
+}
+
+/// How often the columns of a prism are halved for a collapse.
+const MOST_HALVINGS: usize = 4;
 
 /// Whether a column may be changed: not on the boundary, and of some length.
 fn is_free(layer: &Layer, column: u32) -> bool {
