@@ -71,28 +71,31 @@ fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
     if worst_energy(layer, new.iter().copied()) > before.max(LARGEST_ENERGY) {
         return false;
     }
-    match layer.replace(&old, &new) {
-        Ok(()) => true,
-        Err((Failure::Volume, _)) => collapse_thinner(layer, gone, kept, &new),
-        Err(_) => false,
-    }
+    replace(layer, &old, &new)
 }
 
-/// The same where the `new` prisms are not positive: with shorter columns.
+/// Replaces prisms by others if the shell stays valid; where new ones are not positive, with shorter columns.
 ///
 /// Columns that lean, as they do along sharp edges, make prisms positive only if they are short beside the triangles'
 /// heights, and growth has made them as long as they could be.
-fn collapse_thinner(layer: &mut Layer, gone: u32, kept: u32, new: &[[u32; 3]]) -> bool {
+fn replace(layer: &mut Layer, old: &[u32], new: &[[u32; 3]]) -> bool {
+    match layer.replace(old, new) {
+        Ok(()) => return true,
+        Err((Failure::Volume, _)) => {}
+        Err(_) => return false,
+    }
     let mut shorter: Vec<(u32, Column)> = Vec::new();
     let is_positive = new.iter().all(|&corners| shorten(layer, corners, &mut shorter));
     // A column that became shorter for one prism may spoil another.
     let holds = is_positive && new.iter().all(|&corners| layer.prism(corners).check_volumes().is_ok()) && {
-        let mut old: Vec<u32> = shorter.iter().flat_map(|(column, _)| &layer.around[*column as usize]).copied().collect();
-        old.extend(&layer.around[gone as usize]);
-        old.sort_unstable();
-        old.dedup();
-        let moved = old.iter().map(|&prism| layer.prisms[prism as usize].map(|v| if v == gone { kept } else { v }));
-        let new: Vec<[u32; 3]> = moved.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        let mut touched: Vec<u32> =
+            shorter.iter().flat_map(|(column, _)| &layer.around[*column as usize]).copied().collect();
+        touched.sort_unstable();
+        touched.dedup();
+        touched.retain(|prism| !old.contains(prism));
+        let unchanged = touched.iter().map(|&prism| layer.prisms[prism as usize]);
+        let new: Vec<[u32; 3]> = new.iter().copied().chain(unchanged).collect();
+        let old: Vec<u32> = old.iter().copied().chain(touched).collect();
         layer.replace(&old, &new).is_ok()
     };
     if !holds {
@@ -121,7 +124,7 @@ fn shorten(layer: &mut Layer, corners: [u32; 3], shorter: &mut Vec<(u32, Column)
     false
 }
 
-/// How often the columns of a prism are halved for a collapse.
+/// How often the columns of a prism are halved for an operation.
 const MOST_HALVINGS: usize = 4;
 
 /// Whether a column may be changed: not on the boundary, and of some length.
@@ -166,7 +169,7 @@ fn flip(layer: &mut Layer, prism: u32, side: usize) -> bool {
     }
     let new = [[a, d, c], [d, b, c]];
     let before = energy(layer, corners).max(energy(layer, layer.prisms[other as usize]));
-    worst_energy(layer, new.into_iter()) < 0.999 * before && layer.replace(&[prism, other], &new).is_ok()
+    worst_energy(layer, new.into_iter()) < 0.999 * before && replace(layer, &[prism, other], &new)
 }
 
 /// Makes columns up to half as long again as their neighbours on average, at most `target` on either side.
