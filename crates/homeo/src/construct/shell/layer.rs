@@ -136,6 +136,8 @@ pub(super) struct Layer {
     pub around: Vec<Vec<u32>>,
     /// What each prism holds.
     contents: Vec<Contents>,
+    /// Whether operations may make columns shorter.
+    pub may_shorten: bool,
     /// What is to stay, apart from the boundary.
     pub kept: Kept,
 }
@@ -162,6 +164,7 @@ impl Layer {
             exists: vec![true; prisms.len()],
             around: triangles_around(base.complex()),
             contents: vec![Contents::default(); prisms.len()],
+            may_shorten: false,
             kept: Kept::new(base, &params.frozen, params.feature_angle),
             prisms,
         }

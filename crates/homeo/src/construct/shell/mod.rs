@@ -35,6 +35,9 @@ pub struct ShellParams {
     pub prisms: usize,
     /// Rounds of simplification at most; with 0 the middle surface is the source itself.
     pub rounds: usize,
+    /// Whether operations may make columns shorter, once they come to change little without. It gives fewer prisms and a
+    /// thinner shell; for sections a thicker one with more prisms is better, as they keep nearer to the source in it.
+    pub may_thin: bool,
     /// No operation makes an angle between a pillar and the normal of a triangle that it crosses larger than this, in
     /// radians, but where there was such an angle. Nowhere a right one; less than that bounds how the projection stretches.
     pub largest_angle: f64,
@@ -51,6 +54,7 @@ impl Default for ShellParams {
             thickness: 0.1,
             prisms: 0,
             rounds: 30,
+            may_thin: true,
             largest_angle: LARGEST_ANGLE.to_radians(),
             feature_angle: None,
             frozen: Vec::new(),
@@ -384,7 +388,11 @@ fn simplify(
         simplify::thicken(layer, target);
         info.collapses += simplify::collapse_edges(layer, params.prisms, progress);
         if layer.count() as f64 > 0.999 * before as f64 && info.rounds > 3 {
-            break;
+            if layer.may_shorten || !params.may_thin {
+                break;
+            }
+            // Only now: what lies in a thick shell can be coarser.
+            layer.may_shorten = true;
         }
     }
     Ok(())
