@@ -175,6 +175,9 @@ pub struct ShellArgs {
     /// Rounds of simplification at most; with 0 the middle surface is the surface itself
     #[arg(long, value_name = "N", default_value_t = 30)]
     pub rounds: usize,
+    /// A shell that does not overlap itself anywhere, as nested cages have to be; it is thinner where sheets are close
+    #[arg(long)]
+    pub embedded: bool,
     /// Let no pillar come farther than A degrees from the normal of a triangle that it crosses, where none was before
     #[arg(long, value_name = "A", default_value_t = 89.95, value_parser = right_angle)]
     pub largest_angle: f64,

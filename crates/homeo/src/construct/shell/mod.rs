@@ -17,6 +17,7 @@ mod kept;
 pub(in crate::construct) mod layer;
 pub(in crate::construct) mod prism;
 mod simplify;
+mod skin;
 
 use crate::input::SourceMesh;
 use crate::map::Shell;
@@ -35,6 +36,8 @@ pub struct ShellParams {
     pub prisms: usize,
     /// Rounds of simplification at most; with 0 the middle surface is the source itself.
     pub rounds: usize,
+    /// Whether the shell must not overlap itself anywhere in space: bottoms, tops and walls do not meet.
+    pub embedded: bool,
     /// Whether operations may make columns shorter, once they come to change little without. It gives fewer prisms and a
     /// thinner shell; for sections a thicker one with more prisms is better, as they keep nearer to the source in it.
     pub may_thin: bool,
@@ -54,6 +57,7 @@ impl Default for ShellParams {
             thickness: 0.1,
             prisms: 0,
             rounds: 30,
+            embedded: false,
             may_thin: true,
             largest_angle: LARGEST_ANGLE.to_radians(),
             feature_angle: None,
@@ -226,7 +230,16 @@ fn thinned(
         }
         let unfilled: Vec<u32> = (0..).zip(&thinning.is_filled).filter(|(_, full)| !**full).map(|(p, _)| p).collect();
         if unfilled.is_empty() {
-            return Ok(Thinned::Layer(Box::new(thinning.layer)));
+            let clashing = if params.embedded { thinning.layer.keep_apart() } else { Vec::new() };
+            if clashing.is_empty() {
+                return Ok(Thinned::Layer(Box::new(thinning.layer)));
+            }
+            for (prism, slab) in clashing {
+                if let Some(stuck) = thinning.shorten(prism, (Failure::Skin, slab)) {
+                    return Ok(Thinned::Stuck(stuck));
+                }
+            }
+            continue;
         }
         let mut failures = Vec::new();
         for some in unfilled.chunks(FILLED_AT_A_TIME) {
@@ -345,7 +358,7 @@ fn column(base: &Base, v: usize, reach: [f64; 2]) -> Column {
 fn reason(failure: Failure) -> &'static str {
     match failure {
         Failure::Volume => "its prism does not become positive",
-        Failure::Cap | Failure::Sheet => "the surface comes too close to itself",
+        Failure::Cap | Failure::Sheet | Failure::Skin => "the surface comes too close to itself",
         Failure::Crossing => "a triangle near it is crossed the wrong way",
         Failure::Wall => "the surface comes too close to its boundary",
         Failure::Angle => "a triangle near it is nearly parallel to a pillar",
