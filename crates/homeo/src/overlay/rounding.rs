@@ -1,0 +1,86 @@
+//! Rounded positions of exact places, and what rounding does to triangles.
+
+use homeo_core::number::{Lazy, Scalar};
+
+use super::Cell;
+use super::polygon::Place;
+use crate::map::{Shell, ShellSurface};
+
+type Point = [f64; 3];
+
+/// How far a rounded position may be from the exact one, as a part of the size of the surfaces' coordinates: what is less
+/// certain is computed exactly.
+const ACCURACY: f64 = 1e-14;
+
+/// Weights that may be zero are smaller.
+const SMALL: f64 = 1e-9;
+
+/// Rounds places of a shell's surfaces.
+pub(super) struct Rounding {
+    accuracy: f64,
+}
+
+impl Rounding {
+    pub fn of(shell: &Shell) -> Self {
+        let coordinates = shell.source().positions().as_flattened().iter();
+        Self { accuracy: ACCURACY * coordinates.fold(0.0, |size: f64, x| size.max(x.abs())) }
+    }
+
+    /// The point of the source at a place in a cell; that of a vertex is known.
+    pub fn on_source(&self, shell: &Shell, cell: &Cell, place: &Place, vertex: Option<u32>) -> Point {
+        match vertex {
+            Some(v) => shell.source().positions()[v as usize],
+            None => self.rounded(shell.source.corners(cell.source), &cell.on_source(place)),
+        }
+    }
+
+    /// The point of the section, or else of the middle surface, likewise.
+    pub fn on_section(&self, shell: &Shell, cell: &Cell, place: &Place, vertex: Option<u32>) -> Point {
+        match (vertex, &shell.section) {
+            (Some(v), Some(section)) => section.mesh.positions()[v as usize],
+            (Some(v), None) => shell.parts().middle[v as usize],
+            (None, section) => {
+                self.rounded(corners_of_section(shell, section.as_ref(), cell.section), &cell.on_section(place))
+            }
+        }
+    }
+
+    fn rounded(&self, corners: [Point; 3], weights: &[Lazy; 3]) -> Point {
+        if let Some(k) = corner_at(weights) {
+            return corners[k];
+        }
+        let near = weights.each_ref().map(Lazy::interval);
+        let mut exact = None;
+        std::array::from_fn(|axis| {
+            let (middle, radius) = combined(&near, corners, axis).middle_and_radius();
+            if radius <= self.accuracy {
+                return middle;
+            }
+            let exact = exact.get_or_insert_with(|| weights.each_ref().map(|weight| weight.exact().clone()));
+            combined(exact, corners, axis).to_f64()
+        })
+    }
+}
+
+/// The corner of a triangle that a place is, if it is one.
+fn corner_at(weights: &[Lazy; 3]) -> Option<usize> {
+    let is_small = |number: &Lazy| number.interval().low() < SMALL && number.interval().high() > -SMALL;
+    (0..3).find(|&k| {
+        let mut others = [(k + 1) % 3, (k + 2) % 3].into_iter().map(|i| &weights[i]);
+        others.clone().all(is_small) && others.all(Lazy::is_zero)
+    })
+}
+
+/// A coordinate of the point with the given weights.
+pub(super) fn combined<T: Scalar>(weights: &[T; 3], corners: [Point; 3], axis: usize) -> T {
+    let term = |k: usize| weights[k].times(&T::from_f64(corners[k][axis]));
+    term(0).plus(&term(1)).plus(&term(2))
+}
+
+/// The corners of a triangle of the section, or of the middle surface where there is none.
+pub(super) fn corners_of_section(shell: &Shell, section: Option<&ShellSurface>, triangle: u32) -> [Point; 3] {
+    match section {
+        Some(section) => section.corners(triangle),
+        None => shell.parts().prisms[triangle as usize].map(|v| shell.parts().middle[v as usize]),
+    }
+}
