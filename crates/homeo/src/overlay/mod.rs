@@ -29,6 +29,7 @@ use names::{Names, Side};
 use pieces::{Piece, Role, pieces_in};
 use polygon::{Corner, Place, Sides, doubled_area, turn};
 
+pub(crate) use refinement::rounded_to;
 pub use refinement::{ExactVertex, Refinement, refinement};
 pub use shares::{Share, shares};
 

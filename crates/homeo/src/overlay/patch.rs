@@ -22,6 +22,7 @@ pub(super) struct PatchVertex {
     pub seen_at: [u32; 2],
     pub on_source: Point,
     pub on_section: Point,
+    pub on_middle: Point,
     pub border: Border,
     pub names: Vec<Name>,
 }
@@ -185,6 +186,7 @@ impl Spots {
                 seen_at: self.seen_at[spot],
                 on_source: rounding.on_source(shell, cell, place, vertex_of(source_vertex)),
                 on_section: rounding.on_section(shell, cell, place, vertex_of(section_vertex)),
+                on_middle: rounding.on_middle(shell, cell.prism, place),
                 border: border(columns, place),
                 names,
             });

@@ -15,12 +15,16 @@ use crate::progress::Progress;
 
 type Point = [f64; 3];
 
+/// How far a position may be from the exact one, as a part of the size of the source's coordinates: what is less certain is
+/// computed exactly, which takes most of the time where it happens often.
+const ACCURACY: f64 = 1e-10;
+
 /// The map from source to section, or to the middle surface where the shell has no other section, as two meshes with the
 /// same triangles: it is affine on each of them.
 ///
 /// The triangles are those of the exact places, of which [`for_each_exact`](Self::for_each_exact) gives all numbers: a
 /// manifold, homeomorphic to the source, in which each triangle lies in one triangle of the source and in one of the
-/// section, with their orientation. The positions kept here are rounded, and a triangle that is smaller than the last
+/// section, with their orientation. The positions kept here are rounded (vertices of either surface are kept bit for bit), and a triangle that is smaller than the last
 /// digits may be flat in them or turned over; [`rounded_over`](Self::rounded_over) counts these.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Refinement {
@@ -28,10 +32,14 @@ pub struct Refinement {
     pub source: Vec<Point>,
     /// Places of the vertices on the section, `#V by 3`.
     pub section: Vec<Point>,
+    /// Places of the vertices on the middle surface, `#V by 3`.
+    pub middle: Vec<Point>,
     /// Corners of the triangles, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Of each triangle, the one of the source and the one of the section that it lies in.
     pub parents: Vec<[u32; 2]>,
+    /// Of each triangle, the prism that it lies in; ascending.
+    pub prisms: Vec<u32>,
     /// Where each vertex was first seen; ascending.
     seen_at: Vec<Seen>,
 }
@@ -82,8 +90,13 @@ pub struct ExactVertex {
 /// About linear in the cells. Prisms are worked on in parallel and joined in order, so the result does not depend on the
 /// number of threads.
 pub fn refinement(shell: &Shell, progress: &(dyn Progress + Sync)) -> Option<Refinement> {
+    rounded_to(ACCURACY, shell, progress)
+}
+
+/// The same, with positions that are as near to the exact ones as wanted, as a part of the size of coordinates.
+pub(crate) fn rounded_to(accuracy: f64, shell: &Shell, progress: &(dyn Progress + Sync)) -> Option<Refinement> {
     let count = shell.parts().prisms.len() as u32;
-    let rounding = Rounding::of(shell);
+    let rounding = Rounding::new(shell, accuracy);
     let mut joined = Joined::default();
     for begin in (0..count).step_by(CHUNK as usize) {
         if progress.is_cancelled() {
@@ -149,6 +162,7 @@ impl Joined {
         }
         let refinement = &mut self.refinement;
         refinement.triangles.extend(triangles.into_iter().map(|corners| corners.map(|v| numbers[v as usize])));
+        refinement.prisms.extend(std::iter::repeat_n(prism, parents.len()));
         refinement.parents.extend(parents);
         // The second prism at an edge is the last one.
         for ends in ends.iter().zip(&known).filter(|(_, known)| known.is_some()).map(|(ends, _)| ends) {
@@ -160,6 +174,7 @@ impl Joined {
         let number = self.refinement.source.len() as u32;
         self.refinement.source.push(vertex.on_source);
         self.refinement.section.push(vertex.on_section);
+        self.refinement.middle.push(vertex.on_middle);
         let [cell, corner] = vertex.seen_at;
         self.refinement.seen_at.push(Seen { prism, cell, corner });
         match vertex.border {

@@ -8,10 +8,6 @@ use crate::map::{Shell, ShellSurface};
 
 type Point = [f64; 3];
 
-/// How far a rounded position may be from the exact one, as a part of the size of the surfaces' coordinates: what is less
-/// certain is computed exactly.
-const ACCURACY: f64 = 1e-14;
-
 /// Weights that may be zero are smaller.
 const SMALL: f64 = 1e-9;
 
@@ -21,9 +17,10 @@ pub(super) struct Rounding {
 }
 
 impl Rounding {
-    pub fn of(shell: &Shell) -> Self {
+    /// To be as near to the exact positions as this part of the size of the source's coordinates.
+    pub fn new(shell: &Shell, accuracy: f64) -> Self {
         let coordinates = shell.source().positions().as_flattened().iter();
-        Self { accuracy: ACCURACY * coordinates.fold(0.0, |size: f64, x| size.max(x.abs())) }
+        Self { accuracy: accuracy * coordinates.fold(0.0, |size: f64, x| size.max(x.abs())) }
     }
 
     /// The point of the source at a place in a cell; that of a vertex is known.
@@ -43,6 +40,11 @@ impl Rounding {
                 self.rounded(corners_of_section(shell, section.as_ref(), cell.section), &cell.on_section(place))
             }
         }
+    }
+
+    /// The point of the middle surface at a place in a prism.
+    pub fn on_middle(&self, shell: &Shell, prism: u32, place: &Place) -> Point {
+        self.rounded(corners_of_section(shell, None, prism), place)
     }
 
     fn rounded(&self, corners: [Point; 3], weights: &[Lazy; 3]) -> Point {
