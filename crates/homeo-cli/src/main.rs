@@ -39,8 +39,7 @@ use outputs::Outputs;
 use session::Session;
 
 /// As typed; wrong usage is reported before the command line is understood.
-const VERBS: [&str; 10] =
-    ["info", "map", "shell", "simplify", "remesh", "transfer", "pl", "eval", "verify", "report"];
+const VERBS: [&str; 10] = ["info", "map", "shell", "simplify", "remesh", "transfer", "pl", "eval", "verify", "report"];
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {

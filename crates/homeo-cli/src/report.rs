@@ -97,7 +97,12 @@ pub fn stage_shell(
     outputs: &mut Outputs,
 ) -> Result<()> {
     let subtitle = format!("prismatic shell, homeo {}", env!("CARGO_PKG_VERSION"));
-    let mut data = report_of_shell(shell, title, &subtitle, verdict(claim, if shell.section().is_some() { "section" } else { "middle surface" }));
+    let mut data = report_of_shell(
+        shell,
+        title,
+        &subtitle,
+        verdict(claim, if shell.section().is_some() { "section" } else { "middle surface" }),
+    );
     data.facts = shell_facts(shell, claim);
     write(session, path, data, outputs)
 }

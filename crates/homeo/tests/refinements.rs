@@ -114,7 +114,8 @@ fn tiling(
         *sum = &*sum + &area;
     }
     let is_one = |t: usize| sums.get(&(t as u32)).is_some_and(|sum| *sum == Rational::ONE);
-    broken.extend((0..mesh.complex().cell_count()).filter(|&t| !is_one(t)).map(|t| format!("the area of triangle {t}")));
+    broken
+        .extend((0..mesh.complex().cell_count()).filter(|&t| !is_one(t)).map(|t| format!("the area of triangle {t}")));
     broken
 }
 

@@ -22,8 +22,7 @@ use crate::session::Session;
 use crate::text::{Lines, stages};
 
 /// What the columns of the exact file hold.
-const HEADER: &str =
-    "source_triangle,source_a,source_b,source_c,section_triangle,section_a,section_b,section_c";
+const HEADER: &str = "source_triangle,source_a,source_b,source_c,section_triangle,section_a,section_b,section_c";
 
 /// Writes the common refinement of source and section.
 pub fn run(session: &Session, options: &PlArgs, outputs: &mut Outputs) -> Result<Answer> {
@@ -41,7 +40,8 @@ pub fn run(session: &Session, options: &PlArgs, outputs: &mut Outputs) -> Result
     let over = refined.rounded_over(&shell);
     session.check()?;
     session.stage("write");
-    for ((path, positions), format) in names(options).into_iter().zip([&refined.source, &refined.section]).zip(formats) {
+    for ((path, positions), format) in names(options).into_iter().zip([&refined.source, &refined.section]).zip(formats)
+    {
         let losses = staged(session, path, format, &mesh(&refined, positions), outputs)?;
         session.fact(if path == options.output { "losses" } else { "image_losses" }, losses);
     }

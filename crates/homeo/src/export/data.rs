@@ -228,7 +228,10 @@ impl ShellPicture {
             return Err(format!("cell {cell} lies in a prism that does not exist"));
         }
         if self.middle_of_vertex.len() != vertices {
-            return Err(format!("{vertices} vertices, but the places on the middle surface of {}", self.middle_of_vertex.len()));
+            return Err(format!(
+                "{vertices} vertices, but the places on the middle surface of {}",
+                self.middle_of_vertex.len()
+            ));
         }
         if let Some(vertex) = first_not_finite(&self.middle_of_vertex) {
             return Err(format!("the place of vertex {vertex} on the middle surface is not finite"));

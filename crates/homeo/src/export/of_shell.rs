@@ -66,7 +66,8 @@ fn onto_section(shell: &Shell, section: &SourceMesh<3>) -> Drawn {
     let refined = rounded_to(ACCURACY, shell, &Silent).unwrap_or_default();
     let seen = seen(shell.source(), section, &refined);
     let triangles: Vec<[u32; 3]> = seen.iter().map(|&t| refined.triangles[t]).collect();
-    let cells: Vec<[VertexId; 3]> = triangles.iter().map(|corners| corners.map(|v| VertexId::new(v as usize))).collect();
+    let cells: Vec<[VertexId; 3]> =
+        triangles.iter().map(|corners| corners.map(|v| VertexId::new(v as usize))).collect();
     let picture = ShellPicture {
         parts: shell.parts().clone(),
         prism_of_cell: seen.iter().map(|&t| refined.prisms[t]).collect(),
@@ -80,14 +81,14 @@ fn onto_section(shell: &Shell, section: &SourceMesh<3>) -> Drawn {
 
 /// The triangles of a refinement that are large enough to be seen on both sides.
 fn seen(source: &SourceMesh<3>, section: &SourceMesh<3>, refined: &Refinement) -> Vec<usize> {
-    let corners = |mesh: &SourceMesh<3>, t: u32| {
-        mesh.complex().cells()[t as usize].map(|v| mesh.positions()[v.index()])
-    };
+    let corners =
+        |mesh: &SourceMesh<3>, t: u32| mesh.complex().cells()[t as usize].map(|v| mesh.positions()[v.index()]);
     let is_seen = |t: &usize| {
         let [on_source, on_section] =
             [&refined.source, &refined.section].map(|points| area(refined.triangles[*t].map(|v| points[v as usize])));
         let [of_source, of_section] = refined.parents[*t];
-        on_source > SLIVER * area(corners(source, of_source)) && on_section > SLIVER * area(corners(section, of_section))
+        on_source > SLIVER * area(corners(source, of_source))
+            && on_section > SLIVER * area(corners(section, of_section))
     };
     (0..refined.triangles.len()).filter(is_seen).collect()
 }

@@ -291,10 +291,10 @@ fn pack(
         Some(_) => LAYERS.to_vec(),
         None => Coordinate::of(data.target).iter().map(|coordinate| coordinate.name(data.target)).collect(),
     };
-    let shell = data.shell.as_ref().map(|shell| ShellEntry {
-        prisms: shell.parts.prisms.len(),
-        triangles: shell.image_triangles,
-    });
+    let shell = data
+        .shell
+        .as_ref()
+        .map(|shell| ShellEntry { prisms: shell.parts.prisms.len(), triangles: shell.image_triangles });
     let (target, dimension) = (data.target.name(), data.target.space_dimension());
     let manifest = Manifest {
         target,

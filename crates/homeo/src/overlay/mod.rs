@@ -153,10 +153,8 @@ fn cells_of(shell: &Shell, prism: u32) -> Vec<Cell> {
 fn joined(prism: u32, piece: &Piece, other: &Piece, corners: Vec<Corner<3>>) -> Cell {
     let edge = |side: Option<Side>| side.filter(|side| *side < 3);
     let sides = corners.iter().map(|corner| corner.side);
-    let sides = sides.map(|Sides { of_source, of_section }| CellSide {
-        of_source: edge(of_source),
-        of_section: edge(of_section),
-    });
+    let sides = sides
+        .map(|Sides { of_source, of_section }| CellSide { of_source: edge(of_source), of_section: edge(of_section) });
     let known = (0..corners.len()).map(|k| {
         let before = corners[(k + corners.len() - 1) % corners.len()].side;
         recognized(piece, other, before, &corners[k])

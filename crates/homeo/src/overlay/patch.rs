@@ -203,7 +203,6 @@ fn section_vertex(name: &Name) -> Option<u32> {
     if let Name::Section(Origin::Vertex(v)) = name { Some(*v) } else { None }
 }
 
-
 /// How far along a line in no special direction a place is.
 fn across([a, b, _]: &Place) -> Interval {
     let part = |number: &Lazy, factor: f64| number.interval().times(&Interval::from_f64(factor));

@@ -2,13 +2,12 @@
 
 use std::collections::HashMap;
 
-use homeo_core::number::{Interval, Lazy, Rational, Scalar};
-use homeo_core::predicate::Sign;
+use homeo_core::number::{Interval, Lazy, Rational};
 use rayon::prelude::*;
 
 use super::names::Name;
 use super::patch::{Border, Patch, PatchVertex};
-use super::rounding::{Rounding, combined, corners_of_section};
+use super::rounding::{Rounding, combined, corners_of_section, exactly, has_same_side};
 use super::{CHUNK, Cell, cells_of};
 use crate::map::{Shell, SurfacePoint};
 use crate::progress::Progress;
@@ -129,8 +128,7 @@ struct Side {
 impl Side {
     fn find(&self, names: &[Name], weight: &Lazy) -> Option<u32> {
         let meets = |a: Interval, b: Interval| a.low() <= b.high() && b.low() <= a.high();
-        let is_there =
-            |(other, _): &&(Lazy, u32)| meets(other.interval(), weight.interval()) && other == weight;
+        let is_there = |(other, _): &&(Lazy, u32)| meets(other.interval(), weight.interval()) && other == weight;
         let named = names.iter().find_map(|name| self.named.get(name).copied());
         named.or_else(|| self.placed.iter().find(is_there).map(|(_, vertex)| *vertex))
     }
@@ -243,7 +241,6 @@ fn exact_vertices(shell: &Shell, run: &[Seen]) -> Vec<ExactVertex> {
 
 fn exact_vertex(shell: &Shell, cell: &Cell, corner: usize) -> ExactVertex {
     let place = &cell.corners[corner];
-    let exactly = |numbers: &[Lazy; 3]| numbers.each_ref().map(|number| number.exact().clone());
     let on = |triangle: u32, corners: [Point; 3], weights: [Rational; 3]| {
         let point = std::array::from_fn(|axis| combined(&weights, corners, axis));
         SurfacePoint { triangle, weights, point }
@@ -256,21 +253,4 @@ fn exact_vertex(shell: &Shell, cell: &Cell, corner: usize) -> ExactVertex {
         on_source: on(cell.source, shell.source.corners(cell.source), exactly(&cell.on_source(place))),
         on_section: on(cell.section, of_section, exactly(&cell.on_section(place))),
     }
-}
-
-/// Whether the normals of two triangles point to the same side.
-fn has_same_side(triangle: [Point; 3], other: [Point; 3]) -> bool {
-    let near = product_of_normals::<Interval>(triangle, other).sign();
-    near.unwrap_or_else(|| product_of_normals::<Rational>(triangle, other).sign()) == Sign::Positive
-}
-
-fn product_of_normals<T: Scalar>(triangle: [Point; 3], other: [Point; 3]) -> T {
-    let [n, m] = [triangle, other].map(normal::<T>);
-    n[0].times(&m[0]).plus(&n[1].times(&m[1])).plus(&n[2].times(&m[2]))
-}
-
-fn normal<T: Scalar>([a, b, c]: [Point; 3]) -> [T; 3] {
-    let step = |p: Point| -> [T; 3] { std::array::from_fn(|i| T::from_f64(p[i]).minus(&T::from_f64(a[i]))) };
-    let [u, v] = [step(b), step(c)];
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i].times(&v[j]).minus(&u[j].times(&v[i])))
 }

@@ -1,6 +1,7 @@
 //! Rounded positions of exact places, and what rounding does to triangles.
 
-use homeo_core::number::{Lazy, Scalar};
+use homeo_core::number::{Interval, Lazy, Rational, Scalar};
+use homeo_core::predicate::Sign;
 
 use super::Cell;
 use super::polygon::Place;
@@ -58,10 +59,16 @@ impl Rounding {
             if radius <= self.accuracy {
                 return middle;
             }
-            let exact = exact.get_or_insert_with(|| weights.each_ref().map(|weight| weight.exact().clone()));
+            let exact = exact.get_or_insert_with(|| exactly(weights));
             combined(exact, corners, axis).to_f64()
         })
     }
+}
+
+/// Weights in rationals; the third is what is missing to 1, which costs less than to compute it.
+pub(super) fn exactly([a, b, _]: &[Lazy; 3]) -> [Rational; 3] {
+    let [a, b] = [a, b].map(Lazy::exact);
+    [a.clone(), b.clone(), &(&Rational::ONE - a) - b]
 }
 
 /// The corner of a triangle that a place is, if it is one.
@@ -85,4 +92,21 @@ pub(super) fn corners_of_section(shell: &Shell, section: Option<&ShellSurface>, 
         Some(section) => section.corners(triangle),
         None => shell.parts().prisms[triangle as usize].map(|v| shell.parts().middle[v as usize]),
     }
+}
+
+/// Whether the normals of two triangles point to the same side.
+pub(super) fn has_same_side(triangle: [Point; 3], other: [Point; 3]) -> bool {
+    let near = product_of_normals::<Interval>(triangle, other).sign();
+    near.unwrap_or_else(|| product_of_normals::<Rational>(triangle, other).sign()) == Sign::Positive
+}
+
+fn product_of_normals<T: Scalar>(triangle: [Point; 3], other: [Point; 3]) -> T {
+    let [n, m] = [triangle, other].map(normal::<T>);
+    n[0].times(&m[0]).plus(&n[1].times(&m[1])).plus(&n[2].times(&m[2]))
+}
+
+fn normal<T: Scalar>([a, b, c]: [Point; 3]) -> [T; 3] {
+    let step = |p: Point| -> [T; 3] { std::array::from_fn(|i| T::from_f64(p[i]).minus(&T::from_f64(a[i]))) };
+    let [u, v] = [step(b), step(c)];
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i].times(&v[j]).minus(&u[j].times(&v[i])))
 }
