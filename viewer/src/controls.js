@@ -63,7 +63,7 @@ export class Controls {
 
   surfaceGroup() {
     const { shell } = this.model.data;
-    const colourings = [['checks', 'checkerboard'], ['position', shell ? 'place on the middle surface' : 'place in the target'], ['plain', 'one colour']];
+    const colourings = [['checks', 'checkerboard'], ['position', shell ? `place on the ${this.model.data.target}` : 'place in the target'], ['plain', 'one colour']];
     if (this.model.data.distortion) colourings.splice(2, 0, ['distortion', 'distortion']);
     const percent = (value) => `${Math.round(value * 100)} %`;
     this.scale = element('div', { class: 'colour-scale' }, element('span', {}, '1'), element('i', {}), element('span', {}, `≥ ${this.model.data.distortion_end}`));
@@ -115,7 +115,7 @@ export class Controls {
   cutGroup() {
     const axes = (side) => ['x', 'y', 'z'].slice(0, side === 'target' && this.model.isFlat ? 2 : 3);
     const options = [['none', 'no cut']];
-    for (const side of ['target', 'source']) for (const axis of axes(side)) options.push([`${side} ${axis}`, `${side === 'target' && this.model.data.shell ? 'middle' : side} ${axis}`]);
+    for (const side of ['target', 'source']) for (const axis of axes(side)) options.push([`${side} ${axis}`, `${side === 'target' && this.model.data.shell ? this.model.data.target.split(' ')[0] : side} ${axis}`]);
     if (this.model.data.target === 'ball' || this.model.data.target === 'disk') options.splice(1, 0, ['target radius', 'target radius']);
     const words = (value) => {
       if (this.settings.cut === 'none') return '';

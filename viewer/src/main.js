@@ -41,7 +41,9 @@ function start() {
   const scene = readScene(document);
   const left = pane('Source', 'in the units of the file', keys);
   const right = scene.shell
-    ? pane('Middle surface', `of ${scene.shell.prisms} prism${scene.shell.prisms === 1 ? '' : 's'}, in the same units`, keys)
+    ? scene.target === 'section'
+      ? pane('Section', `of ${scene.shell.triangles} triangles, in the same units`, keys)
+      : pane('Middle surface', `of ${scene.shell.prisms} prism${scene.shell.prisms === 1 ? '' : 's'}, in the same units`, keys)
     : pane('Target', `${scene.target}, ${RANGES[scene.target]}`, keys);
   const stageArea = element('div', { class: 'views' }, left.figure, right.figure);
   const panel = element('form', { class: 'panel', 'aria-label': 'What is shown', onsubmit: (event) => event.preventDefault() });

@@ -10,7 +10,7 @@ import {
   PICK_FRAGMENT, SEGMENT_FRAGMENT, SEGMENT_VERTEX, TRIANGLE_FRAGMENT, TRIANGLE_VERTEX,
 } from './shaders.js';
 
-export const TARGETS = ['square', 'disk', 'cube', 'ball', 'middle surface'];
+export const TARGETS = ['square', 'disk', 'cube', 'ball', 'middle surface', 'section'];
 export const COLOURINGS = ['checks', 'position', 'distortion', 'plain'];
 /** Objects on this layer answer to the pointer. */
 export const PICK_LAYER = 1;
@@ -303,8 +303,8 @@ export class Model {
     this.shared.side.value = side === 0 ? morph : 1;
     this.shared.resolution.value.set(width, height);
     this.frame.visible = side === 1 || morph >= 0.5;
-    // The target's side of a shell is the middle layer.
-    if (this.data.shell) for (const { coordinate, mesh } of this.levels) mesh.layers.mask = coordinate === 'middle' && side === 1 ? 0 : LEVEL_LAYERS;
+    // The target's side is the middle layer, but for a map onto another section.
+    if (this.data.shell) for (const { coordinate, mesh } of this.levels) mesh.layers.mask = coordinate === 'middle' && side === 1 && this.data.target === 'middle surface' ? 0 : LEVEL_LAYERS;
     this.surface.material.uniforms.insideSign.value = this.insideSigns[side === 0 && morph < 0.5 ? 0 : 1];
   }
 

@@ -10,7 +10,7 @@ vec3 place(vec3 source, vec3 image) {
 
 /** Colours of target points, the checkerboard, and the cut; shared by surfaces and lines. */
 const TARGET = /* glsl */ `
-uniform int target; // 0 square, 1 disk, 2 cube, 3 ball, 4 middle surface of a shell
+uniform int target; // 0 square, 1 disk, 2 cube, 3 ball, 4 middle surface of a shell, 5 another section of it
 uniform vec3 frameLow, frameSize;
 uniform float checks;
 uniform int cutSpace; // 0 none, 1 source, 2 target
@@ -37,7 +37,7 @@ vec3 fromOklab(vec3 c) {
 }
 
 vec3 centred(vec3 t) {
-  if (target == 4) return 2.0 * (t - frameLow) / max(frameSize, vec3(1e-30)) - 1.0;
+  if (target >= 4) return 2.0 * (t - frameLow) / max(frameSize, vec3(1e-30)) - 1.0;
   return target == 0 ? vec3(2.0 * t.xy - 1.0, 0.0) : target == 2 ? 2.0 * t - 1.0 : t;
 }
 
@@ -100,7 +100,7 @@ float lines(vec3 weights, float reach) {
 
 float checker(vec3 t) {
   vec3 p;
-  if (target == 4) {
+  if (target >= 4) {
     // Lines parallel to the sides cut the prism's triangle into ones that point up and down.
     p = vWeights * checks;
     vec3 w = fwidth(p);
@@ -155,7 +155,7 @@ void main() {
   }
   vec3 normal = normalize(vNormal);
   vec3 view = normalize(vView);
-  if (target == 4 && colouring != 3) base *= 1.0 - 0.8 * lines(vWeights, 1.2);
+  if (target >= 4 && colouring != 3) base *= 1.0 - 0.8 * lines(vWeights, 1.2);
   bool inside = (gl_FrontFacing ? 1.0 : -1.0) * insideSign < 0.0;
   if (inside) base = mix(base, vec3(dot(base, vec3(0.3, 0.6, 0.1))), 0.55) * 0.7;
   if (dot(normal, view) < 0.0) normal = -normal;

@@ -65,6 +65,8 @@ pub enum Verb {
     Remesh(RemeshArgs),
     /// Move attributes from one surface in a shell to another
     Transfer(TransferArgs),
+    /// The map of a shell as two meshes with one connectivity
+    Pl(PlArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
     /// Check the certificate of a map, independently of how it was made
@@ -83,6 +85,7 @@ impl Verb {
             Self::Simplify(_) => "simplify",
             Self::Remesh(_) => "remesh",
             Self::Transfer(_) => "transfer",
+            Self::Pl(_) => "pl",
             Self::Eval(_) => "eval",
             Self::Verify(_) => "verify",
             Self::Report(_) => "report",
@@ -362,6 +365,32 @@ impl std::str::FromStr for Amount {
             None => text.parse().map(Self::Number).map_err(|_| wrong()),
         }
     }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo simplify testdata/meshes/torus.obj --to 10% -o small.obj --map small.homeo
+  homeo pl small.homeo -o source.ply --image section.ply --exact weights.csv
+
+The two files have the same vertices and triangles, in the same order; on each triangle the map is
+affine. They are the exact common refinement of both surfaces, with positions rounded to doubles;
+rounding may turn very small triangles over, and how many is said. source_triangle and
+section_triangle say which triangle of each surface a triangle lies in. --exact writes, for each
+vertex, where it is on both without any error: a triangle and three rationals.
+The image of a map made by `shell` is the middle surface. Maps made by `map` are not supported yet.")]
+pub struct PlArgs {
+    /// A map made by `simplify --map`, `remesh --map` or `shell`
+    #[arg(value_name = "MAP")]
+    pub map: PathBuf,
+    /// The refined source to write (.ply, .vtu, .vtk, .obj, .off)
+    #[arg(short, long, value_name = "SOURCE")]
+    pub output: PathBuf,
+    /// Its image to write, likewise
+    #[arg(long, value_name = "IMAGE")]
+    pub image: PathBuf,
+    /// Also write the exact weights of all vertices
+    #[arg(long, value_name = "FILE.csv")]
+    pub exact: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

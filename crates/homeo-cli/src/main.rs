@@ -39,7 +39,7 @@ use outputs::Outputs;
 use session::Session;
 
 /// As typed; wrong usage is reported before the command line is understood.
-const VERBS: [&str; 9] = ["info", "map", "shell", "simplify", "remesh", "transfer", "eval", "verify", "report"];
+const VERBS: [&str; 10] = ["info", "map", "shell", "simplify", "remesh", "transfer", "pl", "eval", "verify", "report"];
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -100,6 +100,7 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
         Verb::Simplify(options) => inside::simplify(session, options, &mut outputs),
         Verb::Remesh(options) => inside::remesh(session, options, &mut outputs),
         Verb::Transfer(options) => inside::transfer(session, options, &mut outputs),
+        Verb::Pl(options) => inside::pl(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),
         Verb::Report(options) => report::run(session, options, &mut outputs),

@@ -37,7 +37,7 @@ pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Re
         }
         StoredMap::Shell(shell) => {
             session.stage("write");
-            let title = title(&options.map, "middle surface of its shell");
+            let title = title(&options.map, words_for_image(&shell));
             stage_shell(session, &options.output, &title, &shell, &claim, outputs)?;
             (title, json!({"prisms": shell.parts().prisms.len()}))
         }
@@ -58,6 +58,11 @@ pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Re
 pub fn title(input: &Path, target: &str) -> String {
     let name = input.file_name().map_or_else(|| input.display().to_string(), |n| n.to_string_lossy().into_owned());
     format!("{name} onto the {target}")
+}
+
+/// What the source is mapped onto.
+fn words_for_image(shell: &Shell) -> &'static str {
+    if shell.section().is_some() { "section in its shell" } else { "middle surface of its shell" }
 }
 
 /// Stages a page.
@@ -92,7 +97,12 @@ pub fn stage_shell(
     outputs: &mut Outputs,
 ) -> Result<()> {
     let subtitle = format!("prismatic shell, homeo {}", env!("CARGO_PKG_VERSION"));
-    let mut data = report_of_shell(shell, title, &subtitle, verdict(claim, "middle surface"));
+    let mut data = report_of_shell(
+        shell,
+        title,
+        &subtitle,
+        verdict(claim, if shell.section().is_some() { "section" } else { "middle surface" }),
+    );
     data.facts = shell_facts(shell, claim);
     write(session, path, data, outputs)
 }
@@ -151,6 +161,10 @@ fn shell_facts(shell: &Shell, claim: &Claim) -> Vec<(String, String)> {
     let mut facts = vec![
         fact("vertices", source.complex().vertex_count().to_string()),
         fact("triangles", source.complex().cell_count().to_string()),
+        fact(
+            "triangles of the section",
+            shell.section().map_or_else(|| "none".to_owned(), |section| section.complex().cell_count().to_string()),
+        ),
         fact("prisms", parts.prisms.len().to_string()),
         fact("columns", columns.len().to_string()),
         fact("columns pinched to a point", columns.iter().filter(is_pinched).count().to_string()),

@@ -171,7 +171,7 @@ fn demo_leaves(target: TargetShape, inverse: Inverse) -> Vec<Leaf> {
                 let angle = 2.0 * PI * (i + j / 7.0);
                 shares().map(|t| [(0.1 + 0.9 * t) * angle.cos(), (0.1 + 0.9 * t) * angle.sin(), 0.0]).collect()
             }
-            TargetShape::Middle => Vec::new(), // shells have no leaves of this kind
+            TargetShape::Middle | TargetShape::Section => Vec::new(), // shells have no leaves of this kind
             TargetShape::Ball => {
                 let (longitude, height) = (2.0 * PI * (i + j / 7.0), 2.0 * j - 1.0);
                 let across = (1.0 - height * height).sqrt();

@@ -1,15 +1,17 @@
-//! Work inside a shell: `homeo simplify`, `homeo remesh`, `homeo transfer`.
+//! Work inside a shell: `homeo simplify`, `homeo remesh`, `homeo transfer`, `homeo pl`.
 //!
-//! All three end alike: a surface in the shell is certified as the image of the source, what the source's file says is
+//! The first three end alike: a surface in the shell is certified as the image of the source, what the source's file says is
 //! moved to it, and both are written.
 
 mod attributes;
 mod make;
+mod pl;
 mod sizing;
 mod texture;
 mod transfer;
 
 pub use make::{remesh, simplify};
+pub use pl::run as pl;
 pub use transfer::run as transfer;
 
 use std::path::{Path, PathBuf};
@@ -85,6 +87,19 @@ fn mesh_file(surface: &SourceMesh<3>, attributes: Vec<Attribute>, original: &Mes
 /// Writes a mesh under a temporary name and reads it back; notes what the format could not hold.
 fn stage_mesh(session: &Session, path: &Path, format: Format, mesh: &MeshFile, outputs: &mut Outputs) -> Result<()> {
     session.stage("write");
+    let losses = staged(session, path, format, mesh, outputs)?;
+    session.fact("losses", losses);
+    Ok(())
+}
+
+/// The same, for one mesh of several; gives what the format could not hold.
+fn staged(
+    session: &Session,
+    path: &Path,
+    format: Format,
+    mesh: &MeshFile,
+    outputs: &mut Outputs,
+) -> Result<Vec<String>> {
     let mut losses = Vec::new();
     let partial = outputs.stage(session, path, |out| {
         let report = write_mesh_to(out, format, mesh, &WriteOptions::default()).map_err(|e| e.to_string())?;
@@ -103,6 +118,6 @@ fn stage_mesh(session: &Session, path: &Path, format: Format, mesh: &MeshFile, o
     for loss in &losses {
         session.display().note(&format!("{}: {loss}", path.display()));
     }
-    session.fact("losses", losses);
-    session.check()
+    session.check()?;
+    Ok(losses)
 }

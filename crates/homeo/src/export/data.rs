@@ -15,23 +15,30 @@ pub enum TargetShape {
     Ball,
     /// The middle surface of a shell, in the space of the source.
     Middle,
+    /// Another section of a shell, in the space of the source.
+    Section,
 }
 
 impl TargetShape {
     /// Dimension of the shape, 2 or 3.
     pub fn dimension(self) -> usize {
         match self {
-            Self::Square | Self::Disk | Self::Middle => 2,
+            Self::Square | Self::Disk | Self::Middle | Self::Section => 2,
             Self::Cube | Self::Ball => 3,
         }
     }
 
     /// Dimension of the space that the shape is drawn in, 2 or 3.
     pub(super) fn space_dimension(self) -> usize {
-        if self == Self::Middle { 3 } else { self.dimension() }
+        if self.is_in_shell() { 3 } else { self.dimension() }
     }
 
-    /// The name in running text: `square`, `disk`, `cube`, `ball`, `middle surface`.
+    /// Whether it is a surface in a shell.
+    pub(super) fn is_in_shell(self) -> bool {
+        matches!(self, Self::Middle | Self::Section)
+    }
+
+    /// The name in running text: `square`, `disk`, `cube`, `ball`, `middle surface`, `section`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Square => "square",
@@ -39,6 +46,7 @@ impl TargetShape {
             Self::Cube => "cube",
             Self::Ball => "ball",
             Self::Middle => "middle surface",
+            Self::Section => "section",
         }
     }
 }
@@ -128,6 +136,10 @@ pub struct ShellPicture {
     pub parts: ShellParts,
     /// For each cell the prism that it lies in.
     pub prism_of_cell: Vec<u32>,
+    /// For each vertex its place on the middle surface.
+    pub middle_of_vertex: Vec<[f64; 3]>,
+    /// How many triangles the image has.
+    pub image_triangles: usize,
 }
 
 /// All that a report shows. Nothing in it is computed by the report except pictures and statistics.
@@ -152,7 +164,7 @@ pub struct ReportData {
     /// For each cell the ratio (at least 1) of the largest to the smallest singular value of the linear map
     /// on it; infinite where the cell collapses. Empty where it was not computed.
     pub distortion: Vec<f64>,
-    /// With the target [`TargetShape::Middle`] the shell; otherwise nothing.
+    /// With the targets [`TargetShape::Middle`] and [`TargetShape::Section`] the shell; otherwise nothing.
     pub shell: Option<ShellPicture>,
 }
 
@@ -190,18 +202,18 @@ impl ReportData {
             }
         }
         match &self.shell {
-            None if self.target == TargetShape::Middle => Err("there is a middle surface, but no shell".into()),
-            Some(_) if self.target != TargetShape::Middle => {
+            None if self.target.is_in_shell() => Err(format!("there is a {}, but no shell", self.target.name())),
+            Some(_) if !self.target.is_in_shell() => {
                 Err(format!("there is a shell, but the target is the {}", self.target.name()))
             }
-            Some(shell) => shell.check(mesh.cells.len()),
+            Some(shell) => shell.check(mesh.cells.len(), vertices),
             None => Ok(()),
         }
     }
 }
 
 impl ShellPicture {
-    fn check(&self, cells: usize) -> Result<(), String> {
+    fn check(&self, cells: usize, vertices: usize) -> Result<(), String> {
         let ShellParts { bottom, middle, top, prisms } = &self.parts;
         if bottom.len() != middle.len() || top.len() != middle.len() {
             return Err("the layers differ in the number of their points".into());
@@ -214,6 +226,15 @@ impl ShellPicture {
         }
         if let Some(cell) = self.prism_of_cell.iter().position(|&prism| prism as usize >= prisms.len()) {
             return Err(format!("cell {cell} lies in a prism that does not exist"));
+        }
+        if self.middle_of_vertex.len() != vertices {
+            return Err(format!(
+                "{vertices} vertices, but the places on the middle surface of {}",
+                self.middle_of_vertex.len()
+            ));
+        }
+        if let Some(vertex) = first_not_finite(&self.middle_of_vertex) {
+            return Err(format!("the place of vertex {vertex} on the middle surface is not finite"));
         }
         match [bottom, middle, top].into_iter().find_map(|points| first_not_finite(points)) {
             Some(column) => Err(format!("column {column} has a coordinate that is not finite")),

@@ -29,7 +29,7 @@ impl Coordinate {
             TargetShape::Cube => &[Self::Axis(0), Self::Axis(1), Self::Axis(2)],
             TargetShape::Disk => &[Self::Radius, Self::Angle],
             TargetShape::Ball => &[Self::Radius, Self::Angle, Self::Latitude],
-            TargetShape::Middle => &[],
+            TargetShape::Middle | TargetShape::Section => &[],
         }
     }
 

@@ -14,6 +14,8 @@ const VIEWER: &str = include_str!("viewer.js");
 const CAPTION: &str = "A point has the same colour on both sides: the colours and squares are those of the target, pulled back by the map. For display the map is interpolated linearly from the images of the vertices.";
 /// What is seen on the page of a shell, scene by scene.
 const SHELL_CAPTION: &str = "Surface: a point has the same colour on both sides; the pattern cuts each triangle of the middle surface into equal ones and is carried to the source along the pillars, and dark lines are the sides of the prisms. Layers: bottom (orange) and top (blue) of the shell, cut open, with the source between them on the left and the middle surface on the right. Pillars: the edges of the prisms from bottom to top, along which points move. Distortion: how much the projection stretches most over how much it stretches least, at each place of the source.";
+/// The same where the image is another section.
+const SECTION_CAPTION: &str = "Surface: a point has the same colour on both sides; the pattern cuts each triangle of the middle surface, which lies between the two, into equal ones and is carried to both along the pillars, and dark lines are the sides of the prisms. Layers: bottom (orange) and top (blue) of the shell, cut open, with the source between them on the left and the section on the right. Pillars: the edges of the prisms from bottom to top, along which points move. Distortion: how much the map from source to section stretches most over how much it stretches least, at each place of the source.";
 /// The browser itself is told to load nothing from anywhere.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
 
@@ -63,12 +65,20 @@ fn write_viewer(data: &ReportData, scene: &Scene, out: &mut impl Write) -> io::R
         out,
         "</section>\n<p class=\"caption\">Left the source, right the {}. {}",
         data.target.name(),
-        if data.target == TargetShape::Middle { SHELL_CAPTION } else { CAPTION }
+        caption(data.target)
     )?;
     for note in &scene.manifest.notes {
         write!(out, " {}", escape(note))?;
     }
     out.write_all(b"</p>\n")
+}
+
+fn caption(target: TargetShape) -> &'static str {
+    match target {
+        TargetShape::Middle => SHELL_CAPTION,
+        TargetShape::Section => SECTION_CAPTION,
+        _ => CAPTION,
+    }
 }
 
 fn write_claim(verdict: &VerdictWords, out: &mut impl Write) -> io::Result<()> {
@@ -94,10 +104,10 @@ fn write_limits(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "<li>{}</li>", escape(limit))?;
     }
     // True of every report, whatever the caller says.
-    let how = if data.target == TargetShape::Middle {
-        "the source is cut along the prisms in floating point"
-    } else {
-        "the map is interpolated linearly in each cell"
+    let how = match data.target {
+        TargetShape::Middle => "the source is cut along the prisms in floating point",
+        TargetShape::Section => "parts of triangles that are too small to be seen are left out",
+        _ => "the map is interpolated linearly in each cell",
     };
     writeln!(
         out,
@@ -109,10 +119,10 @@ fn write_distortion(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
     let Some(statistics) = Statistics::of(&data.distortion) else { return Ok(()) };
     writeln!(out, "<section id=\"distortion\">\n<h2>Distortion</h2>")?;
     writeln!(out, "<figure>{}<figcaption>", histogram_svg(&statistics))?;
-    let (cells, cell) = if data.target == TargetShape::Middle {
-        ("parts of source triangles, on each of which the projection is linear", "part")
-    } else {
-        ("cells, interpolated linearly", "cell")
+    let (cells, cell) = match data.target {
+        TargetShape::Middle => ("parts of source triangles, on each of which the projection is linear", "part"),
+        TargetShape::Section => ("parts of source triangles, on each of which the map is linear", "part"),
+        _ => ("cells, interpolated linearly", "cell"),
     };
     write!(
         out,

@@ -82,6 +82,8 @@ struct LeafEntry {
 #[derive(Clone, Copy, Debug, Serialize)]
 struct ShellEntry {
     prisms: usize,
+    /// Those of the image.
+    triangles: usize,
 }
 
 /// Vertices that the page holds, with triangles (and perhaps tetrahedra) that refer to them.
@@ -177,10 +179,10 @@ fn select_in_prisms(mesh: &CellMesh, facets: &Facets, shell: &ShellPicture) -> S
         let middle = shell.parts.prisms[prism as usize].map(|v| shell.parts.middle[v as usize]);
         for &vertex in triangle {
             let number = *numbers.entry((vertex, prism)).or_insert_with(|| {
-                let image = mesh.images[vertex as usize];
                 selection.positions.push(mesh.positions[vertex as usize]);
-                selection.images.push(image);
-                selection.weights.extend(weights_near(&middle, image).into_iter().take(2).map(packed_weight));
+                selection.images.push(mesh.images[vertex as usize]);
+                let place = shell.middle_of_vertex[vertex as usize];
+                selection.weights.extend(weights_near(&middle, place).into_iter().take(2).map(packed_weight));
                 selection.positions.len() as u32 - 1
             });
             selection.triangles.push(number);
@@ -227,7 +229,7 @@ fn target_frame(target: TargetShape, images: &[[f64; 3]]) -> Frame {
     let corners = match target {
         TargetShape::Square | TargetShape::Cube => [[0.0; 3], [1.0, 1.0, depth]],
         TargetShape::Disk | TargetShape::Ball => [[-1.0, -1.0, -depth], [1.0, 1.0, depth]],
-        TargetShape::Middle => return Frame::around(images.iter()),
+        TargetShape::Middle | TargetShape::Section => return Frame::around(images.iter()),
     };
     Frame::around(corners.iter().chain(images))
 }
@@ -289,7 +291,10 @@ fn pack(
         Some(_) => LAYERS.to_vec(),
         None => Coordinate::of(data.target).iter().map(|coordinate| coordinate.name(data.target)).collect(),
     };
-    let shell = data.shell.as_ref().map(|shell| ShellEntry { prisms: shell.parts.prisms.len() });
+    let shell = data
+        .shell
+        .as_ref()
+        .map(|shell| ShellEntry { prisms: shell.parts.prisms.len(), triangles: shell.image_triangles });
     let (target, dimension) = (data.target.name(), data.target.space_dimension());
     let manifest = Manifest {
         target,

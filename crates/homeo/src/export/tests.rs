@@ -308,11 +308,35 @@ fn the_page_of_a_shell_is_complete() {
     }
 }
 
+/// The middle surface as another section: both pages show the same map.
+#[test]
+fn the_page_of_a_section_shows_it_beside_the_source() {
+    let shell = torus_shell(30);
+    let middle = report_of_shell(&shell, "torus", "", VerdictWords::default());
+    let parts = shell.parts().clone();
+    let complex = SimplicialComplex::from_indices(parts.middle.len(), &parts.prisms).expect("columns exist");
+    let onto = shell.with_section(SourceMesh::new(parts.middle.clone(), complex));
+    let data = report_of_shell(&onto, "torus", "", VerdictWords::default());
+    assert_eq!(data.target, TargetShape::Section);
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
+    let drawn = [&middle, &data].map(|data| triangles(&data.cells.cells));
+    assert!(near(area(&data.cells.positions, &drawn[1]), area(&middle.cells.positions, &drawn[0])));
+    assert!(near(area(&data.cells.images, &drawn[1]), area(&parts.middle, parts.prisms.as_flattened())));
+    let largest = |data: &ReportData| data.distortion.iter().copied().fold(0.0, f64::max);
+    assert!((largest(&data) / largest(&middle) - 1.0).abs() < 1e-3, "{} {}", largest(&data), largest(&middle));
+    let mut page = Vec::new();
+    write_report(&data, &mut page).expect("a vector takes all");
+    let page = String::from_utf8(page).expect("the page is UTF-8");
+    assert!(page.contains("right the section") && page.contains("\"target\":\"section\""));
+}
+
 #[test]
 fn contradictory_shells_are_refused() {
-    let broken: [fn(&mut ReportData); 6] = [
+    let broken: [fn(&mut ReportData); 8] = [
         |data| data.target = TargetShape::Disk,
         |data| data.shell = None,
+        |data| data.shell.iter_mut().for_each(|shell| _ = shell.middle_of_vertex.pop()),
+        |data| data.shell.iter_mut().for_each(|shell| shell.middle_of_vertex[0][1] = f64::INFINITY),
         |data| data.shell.iter_mut().for_each(|shell| shell.prism_of_cell[0] = u32::MAX),
         |data| data.shell.iter_mut().for_each(|shell| shell.prism_of_cell.truncate(1)),
         |data| data.shell.iter_mut().for_each(|shell| shell.parts.prisms[0][2] = u32::MAX),

@@ -11,8 +11,12 @@
 //! Fails when:  the shell's certificate does not hold: then pieces overlap or leave gaps, and shares do not add up to 1.
 //! See:         `docs/theory/shells.md`.
 
+mod names;
+mod patch;
 mod pieces;
 mod polygon;
+mod refinement;
+mod rounding;
 mod shares;
 
 use homeo_core::number::{Lazy, Scalar};
@@ -21,9 +25,12 @@ use rayon::prelude::*;
 use crate::map::Shell;
 use crate::progress::Progress;
 
+use names::{Names, Side};
 use pieces::{Piece, Role, pieces_in};
-use polygon::{Place, doubled_area, turn};
+use polygon::{Corner, Place, Sides, doubled_area, turn};
 
+pub(crate) use refinement::rounded_to;
+pub use refinement::{ExactVertex, Refinement, refinement};
 pub use shares::{Share, shares};
 
 /// On which edges a side of a cell lies: the corner of the triangle that is opposite to the edge.
@@ -44,13 +51,15 @@ pub struct Cell {
     pub source: u32,
     /// The triangle of the section; the prism where the shell has no other section.
     pub section: u32,
-    /// At least three corners, counter-clockwise; three of them may lie on a line. Each is given by the weights of the
-    /// prism's columns.
+    /// At least three corners, counter-clockwise, no three of them on a line. Each is given by the weights of the prism's
+    /// columns.
     pub corners: Vec<[Lazy; 3]>,
     /// From each corner to the next one.
     pub sides: Vec<CellSide>,
     frame_of_source: [[Lazy; 3]; 3],
     frame_of_section: [[Lazy; 3]; 3],
+    /// Of the corners.
+    names: Vec<Names>,
 }
 
 impl Cell {
@@ -127,7 +136,7 @@ fn cells_of(shell: &Shell, prism: u32) -> Vec<Cell> {
     let of_source = pieces_in(shell, &shell.source, Role::Source, prism);
     let of_section = match &shell.section {
         Some(section) => pieces_in(shell, section, Role::Section, prism),
-        None => vec![Piece::whole_prism(prism)],
+        None => vec![Piece::whole_prism(prism, shell.parts().prisms[prism as usize])],
     };
     let mut cells = Vec::new();
     for piece in &of_source {
@@ -141,16 +150,39 @@ fn cells_of(shell: &Shell, prism: u32) -> Vec<Cell> {
     cells
 }
 
-fn joined(prism: u32, piece: &Piece, other: &Piece, corners: Vec<polygon::Corner<3>>) -> Cell {
-    let side =
-        |corner: &polygon::Corner<3>| CellSide { of_source: corner.side.of_source, of_section: corner.side.of_section };
+fn joined(prism: u32, piece: &Piece, other: &Piece, corners: Vec<Corner<3>>) -> Cell {
+    let edge = |side: Option<Side>| side.filter(|side| *side < 3);
+    let sides = corners.iter().map(|corner| corner.side);
+    let sides = sides
+        .map(|Sides { of_source, of_section }| CellSide { of_source: edge(of_source), of_section: edge(of_section) });
+    let known = (0..corners.len()).map(|k| {
+        let before = corners[(k + corners.len() - 1) % corners.len()].side;
+        recognized(piece, other, before, &corners[k])
+    });
+    let (names, at) = known.unzip();
     Cell {
         prism,
         source: piece.triangle,
         section: other.triangle,
-        sides: corners.iter().map(side).collect(),
-        corners: corners.into_iter().map(|corner| corner.at).collect(),
+        sides: sides.collect(),
+        corners: at,
         frame_of_source: piece.frame.clone(),
         frame_of_section: other.frame.clone(),
+        names,
+    }
+}
+
+/// The names of a cell's corner, and its place by the shortest formula.
+fn recognized(piece: &Piece, other: &Piece, before: Sides, corner: &Corner<3>) -> (Names, Place) {
+    let [on_source, on_section] = [piece, other].map(|piece| piece.corner_between(before, corner.side));
+    match Names::of_corner(on_source.map(|found| found.1), on_section.map(|found| found.1)) {
+        Some(names) => {
+            let known = on_source.or(on_section).map_or(corner, |found| found.0);
+            (names, known.at.clone())
+        }
+        None => {
+            let [source, section] = [piece, other].map(|piece| piece.line(before, corner.side));
+            (Names::of_crossing(source, section), corner.at.clone())
+        }
     }
 }

@@ -4,7 +4,8 @@ use homeo_core::number::{Interval, Lazy, Rational, Scalar};
 use homeo_core::predicate::{Sign, orient3d};
 use homeo_core::spatial::Aabb;
 
-use super::polygon::{Corner, Edges, Place, clipped};
+use super::names::{Line, Maker, Origin, Post, Side};
+use super::polygon::{Corner, Place, Sides, clipped};
 use crate::map::{Shell, ShellSurface};
 
 type Point = [f64; 3];
@@ -16,6 +17,8 @@ pub(super) struct Piece {
     pub hull: Aabb,
     /// Where the triangle's corners would be if all of it lay in the tetrahedron.
     pub frame: [Place; 3],
+    role: Role,
+    maker: Maker,
 }
 
 /// Which of the two surfaces pieces belong to.
@@ -26,30 +29,67 @@ pub(super) enum Role {
 }
 
 impl Role {
-    fn edge(self, opposite: usize) -> Edges {
-        let edge = Some(opposite as u8);
+    fn sides(self, side: Side) -> Sides {
         match self {
-            Self::Source => Edges { of_source: edge, of_section: None },
-            Self::Section => Edges { of_source: None, of_section: edge },
+            Self::Source => Sides { of_source: Some(side), of_section: None },
+            Self::Section => Sides { of_source: None, of_section: Some(side) },
+        }
+    }
+
+    fn of(self, sides: Sides) -> Option<Side> {
+        match self {
+            Self::Source => sides.of_source,
+            Self::Section => sides.of_section,
         }
     }
 }
 
+/// The edge that goes from a corner of a triangle to the next one.
+fn edge_from(corner: usize) -> Side {
+    (corner as Side + 2) % 3
+}
+
 impl Piece {
-    fn new(triangle: u32, corners: Vec<Corner<3>>, frame: [Place; 3]) -> Self {
+    fn new(corners: Vec<Corner<3>>, frame: [Place; 3], role: Role, maker: Maker) -> Self {
         let ends = corners.iter().flat_map(|corner| {
             let ends = corner.at.each_ref().map(Lazy::interval);
             [ends.map(|end| end.low()), ends.map(|end| end.high())]
         });
-        Self { triangle, hull: Aabb::of(&ends.collect::<Vec<_>>()), corners, frame }
+        let hull = Aabb::of(&ends.collect::<Vec<_>>());
+        Self { triangle: maker.triangle, hull, corners, frame, role, maker }
     }
 
-    /// A triangle of the middle surface itself.
-    pub fn whole_prism(prism: u32) -> Self {
+    /// A triangle of the middle surface itself, on these columns.
+    pub fn whole_prism(prism: u32, columns: [u32; 3]) -> Self {
         let frame: [Place; 3] =
             std::array::from_fn(|k| [0, 1, 2].map(|column| Lazy::from_f64(if k == column { 1.0 } else { 0.0 })));
-        let corner = |k: usize| Corner { at: frame[k].clone(), side: Role::Section.edge((k + 2) % 3), is_new: false };
-        Self::new(prism, (0..3).map(corner).collect(), frame.clone())
+        let corner = |k: usize| Corner {
+            at: frame[k].clone(),
+            side: Role::Section.sides(edge_from(k)),
+            is_new: false,
+            mark: Some(k as u8),
+        };
+        let maker = Maker { triangle: prism, vertices: columns, tetrahedron: 0, posts: [0; 4] };
+        Self::new((0..3).map(corner).collect(), frame.clone(), Role::Section, maker)
+    }
+
+    /// Its corner between two sides that meet, and what that is; `None` if they are the same, or not both known.
+    pub fn corner_between(&self, before: Sides, after: Sides) -> Option<(&Corner<3>, Origin)> {
+        let (before, after) = (self.role.of(before)?, self.role.of(after)?);
+        let ends_side = |k: usize| self.role.of(self.corners[(k + self.corners.len() - 1) % self.corners.len()].side);
+        let k = (0..self.corners.len())
+            .find(|&k| ends_side(k) == Some(before) && self.role.of(self.corners[k].side) == Some(after))?;
+        let corner = &self.corners[k];
+        let origin = match corner.mark {
+            Some(mark) => Origin::Vertex(self.maker.vertices[usize::from(mark)]),
+            None => self.maker.origin(before, after),
+        };
+        Some((corner, origin))
+    }
+
+    /// The line of one of its sides, of two of which at most one is its own.
+    pub fn line(&self, before: Sides, after: Sides) -> Option<Line> {
+        self.role.of(before).or(self.role.of(after)).map(|side| self.maker.line(side))
     }
 }
 
@@ -58,25 +98,38 @@ impl Piece {
 pub(super) fn pieces_in(shell: &Shell, surface: &ShellSurface, role: Role, prism: u32) -> Vec<Piece> {
     let slabs = [2 * prism as usize, 2 * prism as usize + 1];
     let mut pieces = Vec::new();
-    for (columns, corners) in slabs.into_iter().flat_map(|slab| shell.slab_cells(slab)) {
+    let cells = slabs.into_iter().flat_map(|slab| shell.slab_cells(slab));
+    for (number, (columns, corners)) in cells.enumerate() {
         let whole = orient3d(corners[0], corners[1], corners[2], corners[3]);
         if whole == Sign::Zero {
             continue; // a pinched column
         }
-        let body = Tetrahedron { corners, columns, is_reversed: whole == Sign::Negative, role };
+        let posts = std::array::from_fn(|i| post(shell, shell.parts().prisms[prism as usize][columns[i]], corners[i]));
+        let is_reversed = whole == Sign::Negative;
+        let body = Tetrahedron { number: number as u8, corners, columns, posts, is_reversed, role };
         pieces.extend(
             surface
                 .near(&corners.map(|p| p.map(Interval::from_f64)))
                 .into_iter()
-                .filter_map(|t| body.piece_of(t, surface.corners(t))),
+                .filter_map(|t| body.piece_of(surface, t)),
         );
     }
     pieces
 }
 
+/// The number of a point of a column. All three of a pinched column are one.
+fn post(shell: &Shell, column: u32, point: Point) -> Post {
+    let parts = shell.parts();
+    let level = [&parts.bottom, &parts.middle, &parts.top].iter().position(|level| level[column as usize] == point);
+    3 * column + level.unwrap_or_default() as u32
+}
+
 /// A tetrahedron of a slab.
 struct Tetrahedron {
+    /// In its prism.
+    number: u8,
     corners: [Point; 4],
+    posts: [Post; 4],
     /// The column of the prism on which each corner lies.
     columns: [usize; 4],
     is_reversed: bool,
@@ -85,7 +138,8 @@ struct Tetrahedron {
 
 impl Tetrahedron {
     /// The part of a triangle in it; `None` without an area.
-    fn piece_of(&self, number: u32, triangle: [Point; 3]) -> Option<Piece> {
+    fn piece_of(&self, surface: &ShellSurface, number: u32) -> Option<Piece> {
+        let triangle = surface.corners(number);
         let signs: [[Sign; 3]; 4] = std::array::from_fn(|face| triangle.map(|point| self.sign(face, point)));
         for (face, signs) in signs.iter().enumerate() {
             if signs.iter().all(|sign| *sign != Sign::Positive) {
@@ -97,18 +151,35 @@ impl Tetrahedron {
         }
         let weights: [[Lazy; 4]; 3] = std::array::from_fn(|k| self.weights(triangle[k], signs.map(|face| face[k])));
         let frame = weights.each_ref().map(|weights| self.place(weights));
-        let corner = |k: usize| Corner { at: weights[k].clone(), side: self.role.edge((k + 2) % 3), is_new: false };
+        let rest = self.part(&weights, &signs)?;
+        let corners = rest.into_iter().map(|corner| Corner {
+            at: self.place(&corner.at),
+            side: corner.side,
+            is_new: false,
+            mark: corner.mark,
+        });
+        let vertices = surface.mesh.complex().cells()[number as usize].map(|v| v.raw());
+        let maker = Maker { triangle: number, vertices, tetrahedron: self.number, posts: self.posts };
+        Some(Piece::new(corners.collect(), frame, self.role, maker))
+    }
+
+    /// The part of a triangle in it, by the weights of the triangle's corners and their signs.
+    fn part(&self, weights: &[[Lazy; 4]; 3], signs: &[[Sign; 3]; 4]) -> Option<Vec<Corner<4>>> {
+        let corner = |k: usize| Corner {
+            at: weights[k].clone(),
+            side: self.role.sides(edge_from(k)),
+            is_new: false,
+            mark: Some(k as u8),
+        };
         let mut rest: Vec<Corner<4>> = (0..3).map(corner).collect();
         for face in (0..4).filter(|&face| signs[face].contains(&Sign::Negative)) {
             let heights: Vec<Lazy> = rest.iter().map(|corner| corner.at[face].clone()).collect();
             let signs: Vec<Sign> = heights.iter().map(Lazy::certain_sign).collect();
-            rest = clipped(rest, &signs, &heights, Edges::default())?;
+            rest = clipped(rest, &signs, &heights, self.role.sides(3 + face as Side))?;
             // What was cut off ends where this weight is zero, which is worth knowing without computing it.
             rest.iter_mut().filter(|corner| corner.is_new).for_each(|corner| corner.at[face] = Lazy::from_f64(0.0));
         }
-        let corners =
-            rest.into_iter().map(|corner| Corner { at: self.place(&corner.at), side: corner.side, is_new: false });
-        Some(Piece::new(number, corners.collect(), frame))
+        Some(rest)
     }
 
     /// The place of a point in the middle triangle.

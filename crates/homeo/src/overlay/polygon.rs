@@ -3,16 +3,16 @@
 use homeo_core::number::{Interval, Lazy, Rational, Scalar};
 use homeo_core::predicate::Sign;
 
-/// On which edges of triangles a side of a polygon lies, by the corners opposite to them.
+/// On which sides of the two pieces that it comes from a side of a polygon lies, by their [numbers](super::names::Side).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Edges {
-    /// Of the source's triangle.
+pub(super) struct Sides {
+    /// Of the source's piece.
     pub of_source: Option<u8>,
-    /// Of the section's triangle.
+    /// Of the section's piece.
     pub of_section: Option<u8>,
 }
 
-impl Edges {
+impl Sides {
     /// What either knows.
     fn and(self, other: Self) -> Self {
         Self { of_source: self.of_source.or(other.of_source), of_section: self.of_section.or(other.of_section) }
@@ -23,9 +23,11 @@ impl Edges {
 #[derive(Clone, Debug)]
 pub(super) struct Corner<const N: usize> {
     pub at: [Lazy; N],
-    pub side: Edges,
+    pub side: Sides,
     /// Whether the last cut made it.
     pub is_new: bool,
+    /// Which corner of the triangle it is, if it is one.
+    pub mark: Option<u8>,
 }
 
 /// A place in a middle triangle: the weights of the prism's columns.
@@ -70,13 +72,13 @@ pub(super) fn intersection(polygon: &[Corner<3>], other: &[Corner<3>]) -> Vec<Co
     rest
 }
 
-/// The part of a convex polygon on the closed positive side of a line that lies on some edges, given the heights of its
+/// The part of a convex polygon on the closed positive side of a line that lies on some sides, given the heights of its
 /// corners over the line and their signs; `None` if it has no area.
 pub(super) fn clipped<const N: usize>(
     corners: Vec<Corner<N>>,
     signs: &[Sign],
     heights: &[Lazy],
-    line: Edges,
+    line: Sides,
 ) -> Option<Vec<Corner<N>>> {
     use Sign::{Negative, Positive, Zero};
     if !signs.contains(&Positive) {
@@ -93,9 +95,9 @@ pub(super) fn clipped<const N: usize>(
             (Zero, Negative) => kept.push(Corner { side: line, ..old(corner) }),
             (Positive, Negative) => {
                 kept.push(old(corner));
-                kept.push(Corner { at: crossing(), side: line, is_new: true });
+                kept.push(Corner { at: crossing(), side: line, is_new: true, mark: None });
             }
-            (Negative, Positive) => kept.push(Corner { at: crossing(), side: corner.side, is_new: true }),
+            (Negative, Positive) => kept.push(Corner { at: crossing(), side: corner.side, is_new: true, mark: None }),
             (Negative, _) => {}
             _ => kept.push(old(corner)),
         }
