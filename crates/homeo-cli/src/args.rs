@@ -160,7 +160,7 @@ The certificate is checked on the bytes that were written; only then do they get
 The middle surface of the first shell is the surface itself; simplification takes prisms away.
 When --timeout is reached then, the shell so far is checked and written.")]
 pub struct ShellArgs {
-    /// A surface, closed or open, that does not cross or touch itself
+    /// A surface, closed or open, that does not cross or touch itself; with --immersed it may cross itself
     #[arg(value_name = "MESH")]
     pub input: PathBuf,
     /// The map file to write
@@ -175,6 +175,9 @@ pub struct ShellArgs {
     /// Rounds of simplification at most; with 0 the middle surface is the surface itself
     #[arg(long, value_name = "N", default_value_t = 30)]
     pub rounds: usize,
+    /// Let the surface cross itself in space: the map is one of abstract surfaces, and the certificate says so
+    #[arg(long)]
+    pub immersed: bool,
     /// Write one self-contained HTML page that shows the shell
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,

@@ -24,7 +24,7 @@ use crate::number::{
 };
 use crate::source::check_finite;
 use crate::triangles::{
-    BoxTree, Bounds, Triangle, bounds, count_crossings, have_common_area, triangles_meet, triangles_meet_beyond,
+    Bounds, BoxTree, Triangle, bounds, count_crossings, have_common_area, triangles_meet, triangles_meet_beyond,
 };
 use crate::verdict::{Checked, Stop, check, decidable, refuted};
 use dashu_int::IBig;

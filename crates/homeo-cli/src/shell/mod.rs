@@ -3,7 +3,7 @@
 mod layers;
 mod refuse;
 
-pub use refuse::unfit;
+pub use refuse::{Crossings, unfit};
 
 use std::cell::Cell;
 use std::path::Path;
@@ -30,14 +30,23 @@ use crate::text::{Lines, counted, file_name, stages};
 pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Result<Answer> {
     let layer_paths = options.layers.as_deref().map(layers::paths);
     check_outputs(options, layer_paths.as_ref().map_or(&[], |paths| paths.as_slice()))?;
-    let params = ShellParams { thickness: options.thickness, prisms: options.prisms, rounds: options.rounds };
+    let params = ShellParams {
+        thickness: options.thickness,
+        prisms: options.prisms,
+        rounds: options.rounds,
+        immersed: options.immersed,
+    };
     let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
     let mesh = mesh_input::read(session, &options.input, requested)?;
     for note in mesh.changes.iter().chain(&mesh.file.losses) {
         session.display().note(note);
     }
     session.stage("check");
-    let complex = unfit(session, &mesh, options.triangulate)?;
+    let crossings = match options.immersed {
+        true => Crossings::Allowed,
+        false => Crossings::Refused { advice: "or give --immersed: the shell is then one of the abstract surface" },
+    };
+    let complex = unfit(session, &mesh, options.triangulate, crossings)?;
     session.check()?;
     let made = construct(session, &source_mesh(&mesh.file, complex), &params)?;
     let provenance = provenance(options, &params);
@@ -56,7 +65,7 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
     session.end_stage();
     let shown = |path: &std::path::PathBuf| path.display().to_string();
     let fields = json!({
-        "target": "shell",
+        "target": claim.target,
         "certificate": proof::claim_json(&claim),
         "quality": quality(&made),
         "output": options.output.as_ref().map(shown),
@@ -154,7 +163,7 @@ fn provenance(options: &ShellArgs, params: &ShellParams) -> Provenance {
         source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
-            "thickness": params.thickness, "prisms": params.prisms, "rounds": params.rounds,
+            "thickness": params.thickness, "prisms": params.prisms, "rounds": params.rounds, "immersed": params.immersed,
             "weld": options.weld, "triangulate": options.triangulate, "orient": options.orient,
         }),
     }
@@ -197,5 +206,6 @@ fn words(session: &Session, options: &ShellArgs, made: &Made, claim: &Claim, wri
         lines.add("written", "no map: give -o FILE.homeo to keep it");
     }
     let name = options.input.display();
-    lines.below(&format!("{name} onto the middle surface of its shell: one-to-one and onto, proved"))
+    let meant = if options.immersed { ", both as abstract surfaces" } else { "" };
+    lines.below(&format!("{name} onto the middle surface of its shell{meant}: one-to-one and onto, proved"))
 }

@@ -53,7 +53,7 @@ impl Stage {
         for (body, &corners) in bodies.iter().zip(&parts.prisms) {
             for (k, [a, b]) in sides(corners).into_iter().enumerate() {
                 if !directed.contains(&[b, a]) {
-                    walls.extend(body.prism.boundary_walls(k).into_iter().map(|(_, wall)| wall));
+                    walls.extend(body.prism.walls_over(k).into_iter().map(|(_, wall)| wall));
                 }
             }
         }

@@ -15,6 +15,7 @@ mod base;
 pub(in crate::construct) mod directions;
 pub(in crate::construct) mod layer;
 pub(in crate::construct) mod prism;
+mod sheets;
 mod simplify;
 
 use crate::input::SourceMesh;
@@ -24,6 +25,7 @@ use crate::progress::Progress;
 use base::Base;
 use layer::Layer;
 use prism::{Column, Failure, FailureIn};
+use sheets::Sheets;
 
 /// What shell is wanted.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,11 +36,14 @@ pub struct ShellParams {
     pub prisms: usize,
     /// Rounds of simplification at most; with 0 the middle surface is the source itself.
     pub rounds: usize,
+    /// Whether the surface may cross itself in space. The shell is then one of the abstract surface: it says which
+    /// triangles belong to which prisms, and sheets that cross do not see each other.
+    pub immersed: bool,
 }
 
 impl Default for ShellParams {
     fn default() -> Self {
-        Self { thickness: 0.1, prisms: 0, rounds: 30 }
+        Self { thickness: 0.1, prisms: 0, rounds: 30, immersed: false }
     }
 }
 
@@ -87,7 +92,7 @@ const SHORTEST: f64 = 1e-13;
 ///
 /// # Preconditions
 /// The triangles form an oriented surface by their links, with or without boundary, none has area zero, and it does not
-/// cross or touch itself.
+/// cross or touch itself, unless `immersed` is set; no two vertices are at one point.
 ///
 /// # Errors
 /// See [`ShellError`].
@@ -99,11 +104,11 @@ pub fn build(
     if !(params.thickness > 0.0 && params.thickness.is_finite()) {
         return Err(ShellError::Thickness);
     }
-    let target = params.thickness * longest_side(source.positions());
+    let target = target_length(source, params);
     progress.stage("directions");
     let mut base = Base::new(source);
     progress.stage("thickness");
-    let mut layer = first_layer(source, &mut base, target, progress)?;
+    let mut layer = first_layer(source, &mut base, params, progress)?;
     let mut info = ShellInfo {
         pinched: (0..layer.columns.len() as u32)
             .filter(|&v| !layer.around[v as usize].is_empty() && layer.is_pinched(v))
@@ -117,6 +122,11 @@ pub fn build(
     // What the operations kept up piece by piece, from scratch.
     debug_assert!((0..layer.prisms.len() as u32).all(|p| !layer.exists[p as usize] || layer.is_valid(p)));
     Ok((Shell::from_parts(source.clone(), layer.into_parts()), info))
+}
+
+/// How long columns may become, on either side.
+fn target_length(source: &SourceMesh<3>, params: &ShellParams) -> f64 {
+    params.thickness * longest_side(source.positions())
 }
 
 fn longest_side(positions: &[[f64; 3]]) -> f64 {
@@ -133,11 +143,11 @@ fn longest_side(positions: &[[f64; 3]]) -> f64 {
 fn first_layer(
     source: &SourceMesh<3>,
     base: &mut Base,
-    target: f64,
+    params: &ShellParams,
     progress: &dyn Progress,
 ) -> Result<Layer, ShellError> {
     for _ in 0..MOST_BEGINNINGS {
-        let stuck = match thinned(source, base, target, progress)? {
+        let stuck = match thinned(source, base, params, progress)? {
             Thinned::Layer(layer) => return Ok(*layer),
             Thinned::Stuck(stuck) => stuck,
         };
@@ -167,8 +177,16 @@ struct Stuck {
     edges: Vec<[u32; 2]>,
 }
 
-fn thinned(source: &SourceMesh<3>, base: &Base, target: f64, progress: &dyn Progress) -> Result<Thinned, ShellError> {
-    let mut thinning = Thinning::new(source, base, first_lengths(&base.mesh, target));
+fn thinned(
+    source: &SourceMesh<3>,
+    base: &Base,
+    params: &ShellParams,
+    progress: &dyn Progress,
+) -> Result<Thinned, ShellError> {
+    let mut thinning = Thinning::new(source, base, first_lengths(&base.mesh, target_length(source, params)));
+    if params.immersed {
+        thinning.layer.sheets = Some(Sheets::new(source, &base.parents)?);
+    }
     loop {
         if let Some(stuck) = thinning.make_positive(progress)? {
             return Ok(Thinned::Stuck(stuck));
