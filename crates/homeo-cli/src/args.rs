@@ -178,6 +178,15 @@ pub struct ShellArgs {
     /// Let the surface cross itself in space: the map is one of abstract surfaces, and the certificate says so
     #[arg(long)]
     pub immersed: bool,
+    /// Let no pillar come farther than A degrees from the normal of a triangle that it crosses, where none was before
+    #[arg(long, value_name = "A", default_value_t = 89.95, value_parser = right_angle)]
+    pub largest_angle: f64,
+    /// Keep edges in the middle surface, as chains, where the normals of their triangles differ by more than A degrees
+    #[arg(long, value_name = "A", value_parser = degrees)]
+    pub features: Option<f64>,
+    /// Vertices that stay vertices of the middle surface: a JSON list of their numbers from 0, after --weld
+    #[arg(long, value_name = "FILE.json")]
+    pub frozen: Option<PathBuf>,
     /// Write one self-contained HTML page that shows the shell
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
@@ -252,6 +261,7 @@ pub struct SimplifyArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   homeo remesh testdata/meshes/torus.obj --edge 0.2 -o even.ply --map even.homeo
+  homeo remesh testdata/meshes/torus.obj --edge 0.3 --adaptive 0.002 -o finer_where_it_bends.ply
 
 As for `simplify`, the map onto the result is one-to-one and onto, proved before anything is written.")]
 pub struct RemeshArgs {
@@ -260,6 +270,12 @@ pub struct RemeshArgs {
     /// The wanted length of edges, in units of MESH [default: the mean length of its edges]
     #[arg(long, value_name = "L", value_parser = positive)]
     pub edge: Option<f64>,
+    /// An attribute of vertices that gives the wanted length of edges there, in units of MESH
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["edge", "adaptive"])]
+    pub sizing: Option<String>,
+    /// Shorter edges where the surface bends, down to a tenth of --edge: chords stay within about E of it, in units of MESH
+    #[arg(long, value_name = "E", value_parser = positive)]
+    pub adaptive: Option<f64>,
     /// How often edges are split, collapsed and flipped, and vertices moved
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
     pub iterations: usize,
@@ -445,6 +461,13 @@ fn degrees(text: &str) -> Result<f64, String> {
         Ok(angle) if (0.0..=180.0).contains(&angle) => Ok(angle),
         _ => Err("an angle between 0 and 180 degrees is needed".to_owned()),
     }
+}
+
+fn right_angle(text: &str) -> Result<f64, String> {
+    degrees(text)
+        .ok()
+        .filter(|angle| *angle <= 90.0)
+        .ok_or_else(|| "an angle between 0 and 90 degrees is needed".to_owned())
 }
 
 fn positive_seconds(text: &str) -> Result<f64, String> {

@@ -146,6 +146,29 @@ fn remesh_makes_edges_even() {
 }
 
 #[test]
+fn edges_are_as_long_as_a_field_says() {
+    let folder = Folder::new();
+    folder.write("t.obj", torus(N, M));
+    // Short edges where x is positive.
+    let length = |p: &[f64; 3]| if p[0] > 0.0 { 0.12 } else { 0.4 };
+    let wanted = mesh(&folder, "t.obj").positions.iter().map(length).collect();
+    with_attributes(&folder, "t.ply", vec![attribute("wanted", Element::Vertex, Values::F64(wanted))]);
+    folder.line("remesh t.ply --sizing wanted -o s.ply -q").expect(0);
+    let remeshed = mesh(&folder, "s.ply");
+    let right = remeshed.positions.iter().filter(|p| p[0] > 0.0).count();
+    assert!(right > 4 * (remeshed.positions.len() - right), "{right} of {}", remeshed.positions.len());
+    let refused = folder.line("remesh t.obj --sizing wanted -o no.ply --json -q").expect(3).json();
+    assert_eq!(refused["error"]["code"], "no-sizing");
+    with_attributes(&folder, "zero.ply", vec![attribute("wanted", Element::Vertex, Values::F64(vec![0.0; N * M]))]);
+    let refused = folder.line("remesh zero.ply --sizing wanted -o no.ply --json -q").expect(3).json();
+    assert_eq!(refused["elements"], serde_json::json!([0]));
+    // The torus bends more round its tube than along it: a chord of edges of 0.5 would leave it by more than this.
+    let counted = |line: &str| folder.line(line).expect(0).json()["quality"]["triangles"].as_u64().unwrap();
+    let even = counted("remesh t.obj --edge 0.5 -o even.ply --json -q");
+    assert!(counted("remesh t.obj --edge 0.5 --adaptive 0.01 -o bent.ply --json -q") > 2 * even);
+}
+
+#[test]
 fn wrong_usage_is_told_apart() {
     let folder = Folder::new();
     folder.write("t.obj", torus(N, M));
@@ -165,6 +188,8 @@ fn wrong_usage_is_told_apart() {
         "simplify t.obj --to 40% --features 200 -o s.obj",
         "remesh t.obj --edge 0 -o s.obj",
         "remesh t.obj --iterations 0 -o s.obj",
+        "remesh t.obj --adaptive 0 -o s.obj",
+        "remesh t.obj --sizing s --edge 1 -o s.obj",
         "transfer t.homeo -o s.obj",
         "transfer t.homeo --from t.obj",
         "transfer t.homeo --from t.obj --onto t.obj --inverse -o s.obj",

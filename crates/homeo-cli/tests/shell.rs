@@ -217,6 +217,26 @@ fn layers_are_meshes_and_limits_are_kept() {
 }
 
 #[test]
+fn what_is_to_stay_stays() {
+    let folder = Folder::new();
+    folder.write("t.obj", torus(24, 10)).write("keep.json", "[0, 17, 200]").write("no.json", "[0, 17000]");
+    folder.write("not.json", "{}");
+    let line = "shell t.obj --frozen keep.json --features 60 --largest-angle 60 -o t.homeo --layers t --json -q";
+    let report = folder.line(line).expect(0).json();
+    let angle = report["quality"]["largest_angle"].as_f64().unwrap();
+    assert!(angle < 60.0 + 1e-9, "{angle}");
+    let (source, middle) = (torus(24, 10), folder.text("t_middle.obj"));
+    let point = |line: &str| -> Vec<f64> { line[2..].split(' ').map(|x| x.parse().unwrap()).collect() };
+    let points = |obj: &str| -> Vec<Vec<f64>> { obj.lines().filter(|l| l.starts_with("v ")).map(point).collect() };
+    let middle = points(&middle);
+    assert!([0, 17, 200].iter().all(|&v: &usize| middle.contains(&points(&source)[v])));
+    let refused = folder.line("shell t.obj --frozen no.json -o no.homeo --json -q").expect(3).json();
+    assert_eq!((&refused["error"]["code"], &refused["elements"]), (&"frozen".into(), &serde_json::json!([17000])));
+    folder.line("shell t.obj --frozen not.json -o no.homeo").expect(3);
+    assert!(!folder.names().contains(&"no.homeo".to_owned()));
+}
+
+#[test]
 fn a_page_shows_the_shell() {
     for (obj, pinched) in [(torus(24, 10), 0), (singular(), 1), (torus(16, 8).replacen("f 1 9 10\n", "", 1), 0)] {
         let folder = Folder::new();
@@ -257,6 +277,8 @@ fn wrong_usage_is_told_apart() {
         "--thickness nan",
         "--thickness inf",
         "--prisms -1",
+        "--largest-angle 91",
+        "--features -1",
         "-o m.obj",
         "-o nowhere/m.homeo",
         "--layers nowhere/m",

@@ -9,11 +9,11 @@ use homeo::construct::section::{
 use homeo::construct::shell::ShellParams;
 use homeo::map::Shell;
 use homeo::progress::Progress;
-use homeo_core::io::Element;
+use homeo_core::io::{Element, MeshFile};
 use homeo_verify::Claim;
 use serde_json::{Value, json};
 
-use super::{Targets, attributes, certify, mesh_file, stage_mesh, texture};
+use super::{Targets, attributes, certify, mesh_file, sizing, stage_mesh, texture};
 use crate::answer::Answer;
 use crate::args::{InsideArgs, RemeshArgs, SimplifyArgs};
 use crate::failure::{Failure, Result};
@@ -35,7 +35,7 @@ struct Made {
 pub fn simplify(session: &Session, options: &SimplifyArgs, outputs: &mut Outputs) -> Result<Answer> {
     let made =
         json!({"to": options.to.map(|to| to.to_string()), "error": options.error, "features": options.common.features});
-    run(session, &options.common, made, outputs, |shell, start, angle| {
+    run(session, &options.common, made, outputs, |shell, start, angle, _| {
         let first = start.surface.complex().cell_count();
         let params = SimplifyParams {
             triangles: options.to.map_or(0, |to| to.of(first)),
@@ -70,10 +70,13 @@ pub fn simplify(session: &Session, options: &SimplifyArgs, outputs: &mut Outputs
 
 /// Triangles of about equal size.
 pub fn remesh(session: &Session, options: &RemeshArgs, outputs: &mut Outputs) -> Result<Answer> {
-    let made = json!({"edge": options.edge, "iterations": options.iterations, "features": options.common.features});
-    run(session, &options.common, made, outputs, |shell, start, angle| {
-        let edge_length = options.edge.unwrap_or_else(|| texture::mean_edge(&start.surface));
-        let params = RemeshParams { edge_length, sizing: None, feature_angle: angle, iterations: options.iterations };
+    let made = json!({
+        "edge": options.edge, "sizing": options.sizing, "adaptive": options.adaptive,
+        "iterations": options.iterations, "features": options.common.features,
+    });
+    run(session, &options.common, made, outputs, |shell, start, angle, file| {
+        let (edge_length, sizing) = sizing::wanted(options, &start.surface, file)?;
+        let params = RemeshParams { edge_length, sizing, feature_angle: angle, iterations: options.iterations };
         let (section, info) = section::remesh(shell, start, &params, &Sections(session)).map_err(explain)?;
         let mean = texture::mean_edge(&section.surface);
         let mut lines = Lines::default();
@@ -108,7 +111,7 @@ fn run(
     options: &InsideArgs,
     construction: Value,
     outputs: &mut Outputs,
-    make: impl FnOnce(&Shell, &TexturedSurface, Option<f64>) -> Result<Made>,
+    make: impl FnOnce(&Shell, &TexturedSurface, Option<f64>, &MeshFile) -> Result<Made>,
 ) -> Result<Answer> {
     let targets = Targets { mesh: &options.output, map: options.map.as_deref() };
     let format = targets.check(&[&options.input])?;
@@ -126,7 +129,7 @@ fn run(
         );
     }
     let start = TexturedSurface { surface: source, texture: carried.as_ref().map(|(texture, _)| texture.clone()) };
-    let made = make(&shell, &start, options.features.map(f64::to_radians))?;
+    let made = make(&shell, &start, options.features.map(f64::to_radians), &mesh.file)?;
     session.check()?;
     let shell = shell.with_section(made.section.surface.clone());
     let provenance = provenance(options, construction);

@@ -5,6 +5,7 @@
 
 mod attributes;
 mod make;
+mod sizing;
 mod texture;
 mod transfer;
 

@@ -1,5 +1,6 @@
 //! `homeo shell`: a certified shell round a closed surface, or the reason why there is none.
 
+mod frozen;
 mod layers;
 mod refuse;
 
@@ -35,6 +36,9 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
         prisms: options.prisms,
         rounds: options.rounds,
         immersed: options.immersed,
+        largest_angle: options.largest_angle.to_radians(),
+        feature_angle: options.features.map(f64::to_radians),
+        frozen: options.frozen.as_deref().map(frozen::read).transpose()?.unwrap_or_default(),
     };
     let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
     let mesh = mesh_input::read(session, &options.input, requested)?;
@@ -79,7 +83,9 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
 fn check_outputs(options: &ShellArgs, layers: &[std::path::PathBuf]) -> Result<()> {
     let outputs: Vec<&std::path::PathBuf> = options.output.iter().chain(&options.report).chain(layers).collect();
     for (index, path) in outputs.iter().enumerate() {
-        check_target(path, &[&options.input])?;
+        let inputs: Vec<&Path> =
+            std::iter::once(&options.input).chain(&options.frozen).map(|path| path.as_path()).collect();
+        check_target(path, &inputs)?;
         if outputs[..index].contains(path) {
             return Err(Failure::usage(format!("two outputs have the name {}", path.display())));
         }
@@ -151,7 +157,8 @@ pub fn construct_in_time(session: &Session, source: &SourceMesh<3>, params: &She
 fn explain(session: &Session, error: &ShellError) -> Failure {
     let message = error.to_string();
     match error {
-        ShellError::Thickness => Failure::usage(message),
+        ShellError::Thickness | ShellError::Angle => Failure::usage(message),
+        ShellError::NoSuchVertex(vertex) => Failure::input("frozen", message).with("elements", json!([vertex])),
         ShellError::Stuck { triangle, .. } => Failure::limits("stuck", message).with("elements", json!([triangle])),
         ShellError::Cancelled => session.stopped(),
     }
@@ -164,6 +171,7 @@ fn provenance(options: &ShellArgs, params: &ShellParams) -> Provenance {
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
             "thickness": params.thickness, "prisms": params.prisms, "rounds": params.rounds, "immersed": params.immersed,
+            "largest_angle": options.largest_angle, "features": options.features, "frozen": options.frozen.is_some(),
             "weld": options.weld, "triangulate": options.triangulate, "orient": options.orient,
         }),
     }
@@ -174,6 +182,7 @@ fn quality(made: &Made) -> Value {
     json!({
         "prisms": info.prisms, "first_prisms": info.first_prisms, "pinched": info.pinched,
         "collapses": info.collapses, "flips": info.flips, "rounds": info.rounds, "cut_short": made.was_cut_short,
+        "largest_angle": info.largest_angle.to_degrees(),
         "middle": {"vertices": parts.middle.len(), "triangles": parts.prisms.len()},
     })
 }
@@ -185,6 +194,8 @@ fn words(session: &Session, options: &ShellArgs, made: &Made, claim: &Claim, wri
     let share = 100.0 * info.prisms as f64 / info.first_prisms.max(1) as f64;
     lines.add("prisms", format!("{} of {} ({share:.1} %)", info.prisms, info.first_prisms));
     lines.add("middle", format!("{} vertices, {} triangles", parts.middle.len(), parts.prisms.len()));
+    let angle = info.largest_angle.to_degrees();
+    lines.add("angle", format!("{angle:.2} degrees at most between pillars and normals"));
     if info.pinched > 0 {
         lines.add("pinched", counted(info.pinched, "vertex without a direction", "vertices without a direction"));
     }

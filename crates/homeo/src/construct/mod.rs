@@ -1,5 +1,6 @@
 //! Constructions of maps, one folder each.
 
+mod crease;
 pub mod foliation;
 pub mod section;
 pub mod shell;

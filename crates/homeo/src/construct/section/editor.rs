@@ -1,12 +1,12 @@
 //! Changes of a section: one that is accepted leaves a section, and one that is refused leaves everything as it was.
 
 use super::atlas::Atlas;
-use super::crease::{Creases, Kind};
 use super::outline::Detour;
 use super::shape::{energy, normal};
 use super::stage::Stage;
 use super::surface::Surface;
 use super::{Refusals, SectionError, TexturedSurface};
+use crate::construct::crease::{Creases, Kind};
 use crate::construct::shell::directions::dot;
 use crate::map::Shell;
 
@@ -80,7 +80,7 @@ impl<'a> Editor<'a> {
         let surface = Surface::new(&start.surface);
         super::check_start(&stage, &surface, start, shell)?;
         let atlas = start.texture.as_ref().map(|texture| Atlas::new(shell, start, texture, &surface));
-        let creases = Creases::new(&surface, atlas.as_ref(), feature_angle);
+        let creases = creases(&surface, atlas.as_ref(), feature_angle);
         Ok(Self { shell, surface, creases, atlas, refusals: Refusals::default(), stage })
     }
 
@@ -221,4 +221,19 @@ impl<'a> Editor<'a> {
         let (surface, kept) = self.surface.finished();
         TexturedSurface { surface, texture: self.atlas.as_ref().map(|atlas| atlas.finished(&kept)) }
     }
+}
+
+/// The edges that stay: boundary, seams, and where the normals differ by more than an angle.
+fn creases(surface: &Surface, atlas: Option<&Atlas>, feature_angle: Option<f64>) -> Creases {
+    let is_feature = |left: u32, right: u32| {
+        let cosine = dot(normal(surface.points(left)), normal(surface.points(right)));
+        feature_angle.is_some_and(|angle| cosine < angle.cos())
+    };
+    let kind = |[a, b]: [u32; 2]| match surface.both_sides(a, b) {
+        None => Some(Kind::Boundary),
+        Some(sides) if atlas.is_some_and(|atlas| atlas.is_seam(surface, [a, b], sides)) => Some(Kind::Seam),
+        Some([left, right]) => is_feature(left, right).then_some(Kind::Feature),
+    };
+    let kept = surface.edges().into_iter().filter_map(|edge| Some((edge, kind(edge)?)));
+    Creases::new(surface.positions.len(), kept)
 }

@@ -39,7 +39,6 @@
 //! shell.
 
 mod atlas;
-mod crease;
 mod editor;
 mod operations;
 mod outline;
@@ -47,11 +46,13 @@ mod quadric;
 mod remesh;
 mod shape;
 mod simplify;
+mod sizing;
 mod stage;
 mod surface;
 
 pub use remesh::{RemeshInfo, RemeshParams, remesh};
 pub use simplify::{SimplifyEnd, SimplifyInfo, SimplifyParams, simplify};
+pub use sizing::lengths_by_curvature;
 
 use rayon::prelude::*;
 

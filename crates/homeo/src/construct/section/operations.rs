@@ -1,8 +1,8 @@
 //! The local operations, each as a change to be accepted or refused.
 
-use super::crease::Kind;
 use super::editor::{Change, Editor, Face, Marking, Rank};
 use super::outline::Detour;
+use crate::construct::crease::Kind;
 
 type Point = [f64; 3];
 

@@ -2,12 +2,12 @@
 
 use std::collections::BinaryHeap;
 
-use super::crease::Kind;
 use super::editor::{Editor, Rank};
 use super::operations::Target;
 use super::shape::{area_vector, between, distance, normal, unit};
 use super::simplify::check_angle;
 use super::{Refusals, SectionError, TexturedSurface};
+use crate::construct::crease::Kind;
 use crate::construct::shell::directions::{dot, minus};
 use crate::map::Shell;
 use crate::progress::Progress;

@@ -104,7 +104,7 @@ fn foot_inside(face: &[Point]) -> Option<Point> {
     Some([moved(0), moved(1), moved(2)])
 }
 
-fn unit_normal([a, b, c]: [Point; 3]) -> Point {
+pub(super) fn unit_normal([a, b, c]: [Point; 3]) -> Point {
     let (u, v) = (minus(b, a), minus(c, a));
     unit([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]).unwrap_or([0.0; 3])
 }

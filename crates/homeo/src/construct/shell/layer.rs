@@ -5,7 +5,9 @@ use std::collections::HashSet;
 use homeo_core::spatial::{Aabb, Tree};
 use rayon::prelude::*;
 
-use super::directions::{dot, minus, triangles_around};
+use super::ShellParams;
+use super::directions::{dot, minus, triangles_around, unit_normal};
+use super::kept::Kept;
 use super::prism::{Column, Failure, FailureIn, Prism, is_inside_wall, is_outside, is_pinched, sides};
 use super::sheets::Sheets;
 use crate::input::SourceMesh;
@@ -22,16 +24,25 @@ pub(super) type Among<'t> = Option<&'t [u32]>;
 /// The source surface, as the checks need it.
 pub(super) struct Surface {
     pub corners: Vec<[Point; 3]>,
+    /// Unit normals, rounded.
+    normals: Vec<Point>,
+    /// No operation makes an angle between a pillar and a normal whose cosine is less, but where there was such an angle.
+    least_cosine: f64,
     tree: Tree,
 }
 
 impl Surface {
-    pub fn new(source: &SourceMesh<3>) -> Self {
+    pub fn new(source: &SourceMesh<3>, least_cosine: f64) -> Self {
         let corner = |v: &homeo_core::mesh::VertexId| source.positions()[v.index()];
         let corners: Vec<[Point; 3]> =
             source.complex().cells().iter().map(|cell| std::array::from_fn(|k| corner(&cell[k]))).collect();
         let boxes: Vec<Aabb> = corners.iter().map(|triangle| Aabb::of(triangle)).collect();
-        Self { tree: Tree::new(&boxes), corners }
+        Self {
+            least_cosine,
+            tree: Tree::new(&boxes),
+            normals: corners.iter().map(|&c| unit_normal(c)).collect(),
+            corners,
+        }
     }
 
     /// Whether something holds for all triangles near some points; for those among the given ones, if there are any.
@@ -50,7 +61,7 @@ impl Surface {
     }
 
     /// L3: whether the surface stays off the caps of a prism.
-    pub fn check_caps(&self, prism: &Prism, among: Among<'_>) -> Result<(), FailureIn> {
+    fn check_caps(&self, prism: &Prism, among: Among<'_>) -> Result<(), FailureIn> {
         let holds = |slab: usize| self.all_near(&prism.cap(slab), among, |triangle| prism.is_off_cap(slab, triangle));
         (0..2).find(|&slab| !holds(slab)).map_or(Ok(()), |slab| Err((Failure::Cap, slab)))
     }
@@ -63,10 +74,10 @@ impl Surface {
     }
 
     /// The triangles among `near` that may have an area in common with a prism; L4 for those that have.
-    pub fn contents(&self, prism: &Prism, near: &[u32]) -> Result<Vec<u32>, FailureIn> {
+    pub fn contents(&self, prism: &Prism, near: &[u32]) -> Result<Contents, FailureIn> {
         let hull = prism.hull();
         let walls = [0, 1].map(|slab| prism.outer_walls(slab));
-        let mut contents = Vec::new();
+        let mut contents = Contents::default();
         for &t in near {
             let triangle = self.corners[t as usize];
             if !hull.meets(&Aabb::of(&triangle)) {
@@ -83,15 +94,40 @@ impl Surface {
                     continue;
                 }
                 is_inside = true;
-                if !is_fine && !prism.is_crossed(slab, triangle) && prism.shares_area(slab, triangle) {
-                    return Err((Failure::Crossing, slab));
+                if !is_fine && !prism.is_crossed(slab, triangle) {
+                    if prism.shares_area(slab, triangle) {
+                        return Err((Failure::Crossing, slab));
+                    }
+                    continue;
+                }
+                let cosine = prism.smallest_cosine(slab, self.normals[t as usize]);
+                // A triangle that is only near does not count where that matters.
+                if cosine < contents.cosine && (cosine >= self.least_cosine || prism.shares_area(slab, triangle)) {
+                    contents.cosine = cosine;
                 }
             }
             if is_inside {
-                contents.push(t);
+                contents.triangles.push(t);
             }
         }
         Ok(contents)
+    }
+}
+
+/// What of the surface lies in a prism.
+#[derive(Clone)]
+pub(super) struct Contents {
+    /// All source triangles with which it has an area in common, and perhaps others near it, ascending; where the surface
+    /// may cross itself, those that belong to it.
+    pub triangles: Vec<u32>,
+    /// The least cosine of the angle between one of its pillars and the normal of one of them (above the bound also of one
+    /// near it); rounded.
+    pub cosine: f64,
+}
+
+impl Default for Contents {
+    fn default() -> Self {
+        Self { triangles: Vec::new(), cosine: 1.0 }
     }
 }
 
@@ -103,21 +139,22 @@ pub(super) struct Layer {
     /// Whether each prism still exists.
     pub exists: Vec<bool>,
     /// Edges of prisms on the boundary of the surface, in the prisms' direction.
-    pub boundary: HashSet<[u32; 2]>,
+    boundary: HashSet<[u32; 2]>,
     /// Columns on the boundary, which stay as they are.
     pub is_frozen: Vec<bool>,
     /// The prisms at each column.
     pub around: Vec<Vec<u32>>,
-    /// For each prism all source triangles with which it has an area in common, and perhaps others near it, ascending;
-    /// where the surface may cross itself, those that belong to it.
-    pub contents: Vec<Vec<u32>>,
+    /// What each prism holds.
+    pub contents: Vec<Contents>,
+    /// What is to stay, apart from the boundary.
+    pub kept: Kept,
     /// Round surfaces that may cross themselves.
     pub sheets: Option<Sheets>,
 }
 
 impl Layer {
     /// The layer of the given columns over the triangles of `base`, which is the source or nearly so; nothing checked yet.
-    pub fn new(source: &SourceMesh<3>, base: &SourceMesh<3>, columns: Vec<Column>) -> Self {
+    pub fn new(source: &SourceMesh<3>, base: &SourceMesh<3>, columns: Vec<Column>, params: &ShellParams) -> Self {
         let prisms: Vec<[u32; 3]> = base.complex().cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
         let mut boundary: HashSet<[u32; 2]> = prisms.iter().flat_map(|&p| sides(p)).collect();
         let all: Vec<[u32; 2]> = boundary.iter().copied().collect();
@@ -130,13 +167,14 @@ impl Layer {
         let mut is_frozen = vec![false; columns.len()];
         boundary.iter().flatten().for_each(|&v| is_frozen[v as usize] = true);
         Self {
-            surface: Surface::new(source),
+            surface: Surface::new(source, params.largest_angle.cos()),
             boundary,
             is_frozen,
             columns,
             exists: vec![true; prisms.len()],
             around: triangles_around(base.complex()),
-            contents: vec![Vec::new(); prisms.len()],
+            contents: vec![Contents::default(); prisms.len()],
+            kept: Kept::new(base, &params.frozen, params.feature_angle),
             sheets: None,
             prisms,
         }
@@ -182,7 +220,7 @@ impl Layer {
     }
 
     /// The contents of a prism among all source triangles, if they satisfy L3 and L4.
-    fn find_contents(&self, prism: u32) -> Result<Vec<u32>, FailureIn> {
+    fn find_contents(&self, prism: u32) -> Result<Contents, FailureIn> {
         let corners = self.prisms[prism as usize];
         let body = self.prism(corners);
         self.check_l3(&body, corners, None)?;
@@ -206,18 +244,20 @@ impl Layer {
         debug_assert!(new.len() <= old.len());
         let bodies: Vec<Prism> = new.iter().map(|&corners| self.prism(corners)).collect();
         bodies.iter().try_for_each(Prism::check_volumes)?;
-        let mut held: Vec<u32> = old.iter().flat_map(|&p| self.contents[p as usize].iter().copied()).collect();
+        let mut held: Vec<u32> =
+            old.iter().flat_map(|&p| self.contents[p as usize].triangles.iter().copied()).collect();
         held.sort_unstable();
         held.dedup();
         let find = |body: &Prism| match self.sheets {
             None => self.surface.contents(body, &held),
             Some(_) => self.belonging(body, &held),
         };
-        let contents: Vec<Vec<u32>> = if held.len() * bodies.len() < WORTH_SHARING {
+        let contents: Vec<Contents> = if held.len() * bodies.len() < WORTH_SHARING {
             bodies.iter().map(find).collect::<Result<_, _>>()?
         } else {
             bodies.par_iter().map(find).collect::<Result<_, _>>()?
         };
+        self.check_angles(old, &contents)?;
         match self.sheets {
             None => bodies.iter().try_for_each(|body| self.surface.check_caps(body, None))?,
             Some(_) => self.check_replaced(old, new, &contents)?,
@@ -227,7 +267,7 @@ impl Layer {
                 self.around[column as usize].retain(|&other| other != prism);
             }
             self.exists[prism as usize] = false;
-            self.contents[prism as usize] = Vec::new();
+            self.contents[prism as usize] = Contents::default();
         }
         for ((&prism, &corners), contents) in old.iter().zip(new).zip(contents) {
             self.exists[prism as usize] = true;
@@ -236,6 +276,20 @@ impl Layer {
             corners.iter().for_each(|&column| self.around[column as usize].push(prism));
         }
         Ok(())
+    }
+
+    /// Whether new contents are met by pillars at angles that are allowed, or no larger than before.
+    fn check_angles(&self, old: &[u32], new: &[Contents]) -> Result<(), FailureIn> {
+        let before = old.iter().map(|&prism| self.contents[prism as usize].cosine).fold(1.0, f64::min);
+        let after = new.iter().map(|contents| contents.cosine).fold(1.0, f64::min);
+        if after < before.min(self.surface.least_cosine) { Err((Failure::Angle, 0)) } else { Ok(()) }
+    }
+
+    /// The largest angle between a pillar of a prism and the normal of a triangle in it, in radians (below the bound also
+    /// of a triangle near it); rounded.
+    pub fn largest_angle(&self) -> f64 {
+        let existing = self.contents.iter().zip(&self.exists).filter(|(_, exists)| **exists);
+        existing.map(|(contents, _)| contents.cosine).fold(1.0, f64::min).acos()
     }
 
     /// Accepts a column that was changed, if its prisms satisfy L2 to L4.
@@ -249,7 +303,7 @@ impl Layer {
     /// `None` if it does not meet what the prisms round it hold.
     pub fn with_middle_on_surface(&self, column: u32, wanted: Column) -> Option<Column> {
         let [from, _, to] = wanted;
-        let held = self.around[column as usize].iter().flat_map(|&p| &self.contents[p as usize]);
+        let held = self.around[column as usize].iter().flat_map(|&p| &self.contents[p as usize].triangles);
         let share = held.filter_map(|&t| hit(from, to, self.surface.corners[t as usize])).next()?;
         let at = |share: f64| [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]));
         let [bottom, middle, top] = self.columns[column as usize];

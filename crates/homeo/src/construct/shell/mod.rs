@@ -13,6 +13,7 @@
 
 mod base;
 pub(in crate::construct) mod directions;
+mod kept;
 pub(in crate::construct) mod layer;
 pub(in crate::construct) mod prism;
 mod sheets;
@@ -39,13 +40,32 @@ pub struct ShellParams {
     /// Whether the surface may cross itself in space. The shell is then one of the abstract surface: it says which
     /// triangles belong to which prisms, and sheets that cross do not see each other.
     pub immersed: bool,
+    /// No operation makes an angle between a pillar and the normal of a triangle that it crosses larger than this, in
+    /// radians, but where there was such an angle. Nowhere a right one; less than that bounds how the projection stretches.
+    pub largest_angle: f64,
+    /// Edges of the source whose triangles' normals differ by more than this, in radians, stay in the middle surface as
+    /// chains of fewer edges.
+    pub feature_angle: Option<f64>,
+    /// Vertices of the source that stay vertices of the middle surface, in their place.
+    pub frozen: Vec<u32>,
 }
 
 impl Default for ShellParams {
     fn default() -> Self {
-        Self { thickness: 0.1, prisms: 0, rounds: 30, immersed: false }
+        Self {
+            thickness: 0.1,
+            prisms: 0,
+            rounds: 30,
+            immersed: false,
+            largest_angle: LARGEST_ANGLE.to_radians(),
+            feature_angle: None,
+            frozen: Vec::new(),
+        }
     }
 }
+
+/// In degrees; as in the source.
+const LARGEST_ANGLE: f64 = 89.95;
 
 /// What happened during a construction.
 #[derive(Clone, Debug, Default)]
@@ -62,6 +82,9 @@ pub struct ShellInfo {
     pub flips: usize,
     /// Rounds of simplification.
     pub rounds: usize,
+    /// The largest angle between a pillar of a prism and the normal of a triangle in it, in radians; below the bound
+    /// also of a triangle that is only near it.
+    pub largest_angle: f64,
 }
 
 /// Why no shell was made.
@@ -70,6 +93,12 @@ pub enum ShellError {
     /// The thickness is no positive number.
     #[error("the thickness has to be a positive number")]
     Thickness,
+    /// An angle is not between 0 and a right one (`largest_angle`) or a straight one (`feature_angle`).
+    #[error("the largest angle has to be between 0 and 90 degrees, that of features between 0 and 180")]
+    Angle,
+    /// A vertex to be kept does not exist.
+    #[error("there is no vertex {0} to be kept")]
+    NoSuchVertex(u32),
     /// No positive thickness was found at a triangle.
     #[error(
         "no shell was found at triangle {triangle}: {reason}; split the triangles there, or remove self-intersections"
@@ -104,11 +133,12 @@ pub fn build(
     if !(params.thickness > 0.0 && params.thickness.is_finite()) {
         return Err(ShellError::Thickness);
     }
-    let target = target_length(source, params);
+    check_kept(source, params)?;
+    let target = params.thickness * longest_side(source.positions());
     progress.stage("directions");
     let mut base = Base::new(source);
     progress.stage("thickness");
-    let mut layer = first_layer(source, &mut base, params, progress)?;
+    let mut layer = first_layer(source, &mut base, params, target, progress)?;
     let mut info = ShellInfo {
         pinched: (0..layer.columns.len() as u32)
             .filter(|&v| !layer.around[v as usize].is_empty() && layer.is_pinched(v))
@@ -119,14 +149,20 @@ pub fn build(
     progress.stage("simplify");
     simplify(&mut layer, params, target, progress, &mut info)?;
     info.prisms = layer.count();
+    info.largest_angle = layer.largest_angle();
     // What the operations kept up piece by piece, from scratch.
     debug_assert!((0..layer.prisms.len() as u32).all(|p| !layer.exists[p as usize] || layer.is_valid(p)));
     Ok((Shell::from_parts(source.clone(), layer.into_parts()), info))
 }
 
-/// How long columns may become, on either side.
-fn target_length(source: &SourceMesh<3>, params: &ShellParams) -> f64 {
-    params.thickness * longest_side(source.positions())
+fn check_kept(source: &SourceMesh<3>, params: &ShellParams) -> Result<(), ShellError> {
+    let is_sharp = params.feature_angle.is_none_or(|angle| (0.0..=std::f64::consts::PI).contains(&angle));
+    if !is_sharp || !(0.0..=std::f64::consts::FRAC_PI_2).contains(&params.largest_angle) {
+        return Err(ShellError::Angle);
+    }
+    let count = source.positions().len();
+    let missing = params.frozen.iter().find(|&&v| v as usize >= count);
+    missing.map_or(Ok(()), |&v| Err(ShellError::NoSuchVertex(v)))
 }
 
 fn longest_side(positions: &[[f64; 3]]) -> f64 {
@@ -144,10 +180,11 @@ fn first_layer(
     source: &SourceMesh<3>,
     base: &mut Base,
     params: &ShellParams,
+    target: f64,
     progress: &dyn Progress,
 ) -> Result<Layer, ShellError> {
     for _ in 0..MOST_BEGINNINGS {
-        let stuck = match thinned(source, base, params, progress)? {
+        let stuck = match thinned(source, base, params, target, progress)? {
             Thinned::Layer(layer) => return Ok(*layer),
             Thinned::Stuck(stuck) => stuck,
         };
@@ -181,9 +218,10 @@ fn thinned(
     source: &SourceMesh<3>,
     base: &Base,
     params: &ShellParams,
+    target: f64,
     progress: &dyn Progress,
 ) -> Result<Thinned, ShellError> {
-    let mut thinning = Thinning::new(source, base, first_lengths(&base.mesh, target_length(source, params)));
+    let mut thinning = Thinning::new(source, base, first_lengths(&base.mesh, target), params);
     if params.immersed {
         thinning.layer.sheets = Some(Sheets::new(source, &base.parents)?);
     }
@@ -234,10 +272,10 @@ struct Thinning<'a> {
 }
 
 impl<'a> Thinning<'a> {
-    fn new(source: &SourceMesh<3>, base: &'a Base, lengths: Vec<f64>) -> Self {
+    fn new(source: &SourceMesh<3>, base: &'a Base, lengths: Vec<f64>, params: &ShellParams) -> Self {
         let reaches: Vec<[f64; 2]> = lengths.iter().map(|&length| [length; 2]).collect();
         let columns = (0..).zip(&reaches).map(|(v, &reach)| column(base, v, reach)).collect();
-        let layer = Layer::new(source, &base.mesh, columns);
+        let layer = Layer::new(source, &base.mesh, columns, params);
         let count = layer.prisms.len();
         Self {
             base,
@@ -315,6 +353,7 @@ fn reason(failure: Failure) -> &'static str {
         Failure::Cap => "the surface comes too close to itself",
         Failure::Crossing => "a triangle near it is crossed the wrong way",
         Failure::Wall => "the surface comes too close to its boundary",
+        Failure::Angle => "a triangle near it is nearly parallel to a pillar",
     }
 }
 

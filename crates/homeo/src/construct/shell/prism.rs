@@ -7,6 +7,8 @@ use homeo_core::predicate::{
 };
 use homeo_core::spatial::Aabb;
 
+use super::directions::{dot, minus};
+
 type Point = [f64; 3];
 
 /// Bottom, middle and top of a column.
@@ -29,6 +31,8 @@ pub(in crate::construct) enum Failure {
     Crossing,
     /// L3: a wall over the boundary meets the surface off its edge.
     Wall,
+    /// A pillar is farther from a triangle's normal than is wanted, which the theorem does not care about.
+    Angle,
 }
 
 /// A prism with its points.
@@ -158,6 +162,16 @@ impl Prism {
         let crosses =
             |column: &Column| quick_crossing_sign(triangle, [column[low], column[high]]) == Some(Sign::Positive);
         (0..3).filter(|&i| !self.pinched[i]).all(|i| crosses(&self.columns[i]))
+    }
+
+    /// The least cosine of the angle between a pillar of a slab and a unit normal; rounded.
+    pub fn smallest_cosine(&self, slab: usize, normal: Point) -> f64 {
+        let [low, high] = SLABS[slab];
+        let cosine = |column: &Column| {
+            let pillar = minus(column[high], column[low]);
+            dot(pillar, normal) / dot(pillar, pillar).sqrt()
+        };
+        (0..3).filter(|&i| !self.pinched[i]).map(|i| cosine(&self.columns[i])).fold(1.0, f64::min)
     }
 
     /// Whether a slab lies on one closed side of a triangle's plane, with at most two of its points in it: they have

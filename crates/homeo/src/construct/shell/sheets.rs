@@ -10,7 +10,7 @@ use homeo_core::mesh::{Adjacency, CellId};
 use rayon::prelude::*;
 
 use super::ShellError;
-use super::layer::Layer;
+use super::layer::{Contents, Layer};
 use super::prism::{Failure, FailureIn, Prism, sides};
 use crate::input::SourceMesh;
 
@@ -47,14 +47,21 @@ impl Layer {
         let first = |&prism: &u32| self.spread(sheets, prism, vec![sheets.parents[prism as usize]]);
         let found: Vec<Vec<u32>> = prisms.par_iter().map(first).collect();
         for (&prism, found) in prisms.iter().zip(found) {
-            self.contents[prism as usize] = found;
+            self.contents[prism as usize].triangles = found;
         }
         let mut filled = prisms.to_vec();
         filled.extend(self.exchange(prisms));
         filled.sort_unstable();
         filled.dedup();
-        let check = |&prism: &u32| self.check_belonging(prism).err().map(|failure| (prism, failure));
-        filled.par_iter().filter_map(check).collect()
+        let checked: Vec<_> = filled.par_iter().map(|&prism| (prism, self.check_belonging(prism))).collect();
+        let mut failures = Vec::new();
+        for (prism, checked) in checked {
+            match checked {
+                Ok(cosine) => self.contents[prism as usize].cosine = cosine,
+                Err(failure) => failures.push((prism, failure)),
+            }
+        }
+        failures
     }
 
     /// All triangles that are joined to some of those that belong to a prism over edges that meet it, ascending.
@@ -94,10 +101,11 @@ impl Layer {
             for k in 0..3 {
                 let corners = self.prisms[prism as usize];
                 let Some(other) = self.prism_beyond(corners, k, &[prism]) else { continue };
-                let through = self.missing_beyond(&self.prism(corners), k, &self.contents[prism as usize], other);
+                let through =
+                    self.missing_beyond(&self.prism(corners), k, &self.contents[prism as usize].triangles, other);
                 let Some(sheets) = self.sheets.as_ref().filter(|_| !through.is_empty()) else { continue };
-                let all = [through, self.contents[other as usize].clone()].concat();
-                self.contents[other as usize] = self.spread(sheets, other, all);
+                let all = [through, self.contents[other as usize].triangles.clone()].concat();
+                self.contents[other as usize].triangles = self.spread(sheets, other, all);
                 changed.insert(other);
                 waiting.push(other);
             }
@@ -114,40 +122,40 @@ impl Layer {
 
     /// Those of some triangles that meet the walls over a side, but do not belong to the prism beyond.
     fn missing_beyond(&self, body: &Prism, k: usize, triangles: &[u32], other: u32) -> Vec<u32> {
-        let others = &self.contents[other as usize];
+        let others = &self.contents[other as usize].triangles;
         let is_missing = |t: &u32| others.binary_search(t).is_err();
         let goes_through = |t: &u32| body.meets_wall(k, self.surface.corners[*t as usize]);
         triangles.iter().copied().filter(|t| is_missing(t) && goes_through(t)).collect()
     }
 
-    /// L3 and L4 for what belongs to a prism.
-    pub fn check_belonging(&self, prism: u32) -> Result<(), FailureIn> {
-        let (corners, contents) = (self.prisms[prism as usize], &self.contents[prism as usize]);
+    /// L3 and L4 for what belongs to a prism. Returns the least cosine between pillars and normals.
+    pub fn check_belonging(&self, prism: u32) -> Result<f64, FailureIn> {
+        let (corners, contents) = (self.prisms[prism as usize], &self.contents[prism as usize].triangles);
         let body = self.prism(corners);
         self.check_l3(&body, corners, Some(contents))?;
-        self.surface.contents(&body, contents).map(|_| ())
+        self.surface.contents(&body, contents).map(|found| found.cosine)
     }
 
     /// Whether nothing is missing in a prism: rules I3 and I4.
     pub fn is_complete(&self, prism: u32) -> bool {
         let corners = self.prisms[prism as usize];
-        self.check_complete(corners, &self.contents[prism as usize], &[prism]).is_ok()
+        self.check_complete(corners, &self.contents[prism as usize].triangles, &[prism]).is_ok()
     }
 
     /// Those of some triangles that may belong to a prism instead of the prisms that held them, if they satisfy L4.
-    pub fn belonging(&self, body: &Prism, held: &[u32]) -> Result<Vec<u32>, FailureIn> {
+    pub fn belonging(&self, body: &Prism, held: &[u32]) -> Result<Contents, FailureIn> {
         let walls = [0, 1].map(|slab| body.outer_walls(slab));
         let mut belonging = held.to_vec();
         belonging.retain(|&t| !body.is_clearly_off(self.surface.corners[t as usize], &walls));
-        self.surface.contents(body, &belonging)?;
-        Ok(belonging)
+        let cosine = self.surface.contents(body, &belonging)?.cosine;
+        Ok(Contents { triangles: belonging, cosine })
     }
 
     /// L3 for prisms in the place of others, and whether what belongs to them is complete.
-    pub fn check_replaced(&self, old: &[u32], new: &[[u32; 3]], contents: &[Vec<u32>]) -> Result<(), FailureIn> {
+    pub fn check_replaced(&self, old: &[u32], new: &[[u32; 3]], contents: &[Contents]) -> Result<(), FailureIn> {
         for (&corners, contents) in new.iter().zip(contents) {
-            self.check_l3(&self.prism(corners), corners, Some(contents))?;
-            self.check_complete(corners, contents, old)?;
+            self.check_l3(&self.prism(corners), corners, Some(&contents.triangles))?;
+            self.check_complete(corners, &contents.triangles, old)?;
         }
         Ok(())
     }
@@ -176,7 +184,7 @@ impl Layer {
         let of_prism = |(number, &prism): (usize, &usize)| {
             let body = self.prism(self.prisms[prism]);
             let met = |t: &&u32| body.meets(self.surface.corners[**t as usize]);
-            let met = self.contents[prism].iter().filter(met);
+            let met = self.contents[prism].triangles.iter().filter(met);
             met.map(|&t| [t, number as u32]).collect::<Vec<_>>()
         };
         let mut pairs: Vec<[u32; 2]> = left.par_iter().enumerate().flat_map_iter(of_prism).collect();

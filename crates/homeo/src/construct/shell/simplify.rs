@@ -60,7 +60,7 @@ pub(super) fn collapse_edges(layer: &mut Layer, enough: usize, progress: &dyn Pr
 
 /// Moves column `gone` into its neighbour `kept`, if the shell stays valid.
 fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
-    if !is_free(layer, gone) || !is_link_fit(layer, gone, kept) {
+    if !is_free(layer, gone) || !layer.kept.may_go(gone, kept) || !is_link_fit(layer, gone, kept) {
         return false;
     }
     let old = layer.around[gone as usize].clone();
@@ -71,7 +71,11 @@ fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
     if worst_energy(layer, new.iter().copied()) > before.max(LARGEST_ENERGY) {
         return false;
     }
-    replace(layer, &old, &new)
+    let is_done = replace(layer, &old, &new);
+    if is_done {
+        layer.kept.collapse(gone, kept);
+    }
+    is_done
 }
 
 /// Replaces prisms by others if the shell stays valid; where new ones are not positive, with shorter columns.
@@ -161,7 +165,8 @@ fn flip(layer: &mut Layer, prism: u32, side: usize) -> bool {
     // Each edge from the prism with the smaller number.
     let Some(other) = beyond.filter(|&other| other > prism) else { return false };
     let Some(d) = layer.prisms[other as usize].into_iter().find(|&v| v != a && v != b) else { return false };
-    if layer.neighbours(c).binary_search(&d).is_ok()
+    if layer.kept.is_edge(a, b)
+        || layer.neighbours(c).binary_search(&d).is_ok()
         || layer.around[a as usize].len() < 4
         || layer.around[b as usize].len() < 4
     {
@@ -202,7 +207,9 @@ pub(super) fn smooth(layer: &mut Layer, progress: &dyn Progress) -> usize {
             continue;
         }
         let neighbours = layer.neighbours(column);
-        moved += usize::from(pan(layer, column, &neighbours)) + usize::from(turn(layer, column, &neighbours));
+        let is_fixed = layer.kept.is_fixed(column);
+        moved += usize::from(!is_fixed && pan(layer, column, &neighbours));
+        moved += usize::from(turn(layer, column, &neighbours));
     }
     moved
 }

@@ -1,13 +1,8 @@
-//! Edges that stay edges: boundary, seams of a texture, and features.
-
-use super::atlas::Atlas;
-use super::shape::normal;
-use super::surface::Surface;
-use crate::construct::shell::directions::dot;
+//! Edges of a surface under change that stay edges: boundary, seams of a texture, and features.
 
 /// Why an edge is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(in crate::construct) enum Kind {
     /// One triangle only: it may not change at all.
     Boundary,
     /// The texture is cut there.
@@ -17,31 +12,19 @@ pub(super) enum Kind {
 }
 
 /// The kept edges at each vertex.
-pub(super) struct Creases {
+pub(in crate::construct) struct Creases {
     at: Vec<Vec<(u32, Kind)>>,
 }
 
 impl Creases {
-    pub fn new(surface: &Surface, atlas: Option<&Atlas>, feature_angle: Option<f64>) -> Self {
-        let mut creases = Self { at: vec![Vec::new(); surface.positions.len()] };
-        let is_feature = |left: u32, right: u32| {
-            let cosine = dot(normal(surface.points(left)), normal(surface.points(right)));
-            feature_angle.is_some_and(|angle| cosine < angle.cos())
-        };
-        for [a, b] in surface.edges() {
-            let kind = match surface.both_sides(a, b) {
-                None => Some(Kind::Boundary),
-                Some([left, right]) if atlas.is_some_and(|atlas| atlas.is_seam(surface, [a, b], [left, right])) => {
-                    Some(Kind::Seam)
-                }
-                Some([left, right]) => is_feature(left, right).then_some(Kind::Feature),
-            };
-            if let Some(kind) = kind {
-                creases.at[a as usize].push((b, kind));
-                creases.at[b as usize].push((a, kind));
-            }
+    /// Those of a surface with so many vertices; each edge once.
+    pub fn new(vertices: usize, kept: impl IntoIterator<Item = ([u32; 2], Kind)>) -> Self {
+        let mut at = vec![Vec::new(); vertices];
+        for ([a, b], kind) in kept {
+            at[a as usize].push((b, kind));
+            at[b as usize].push((a, kind));
         }
-        creases
+        Self { at }
     }
 
     /// The kept edges at a vertex.
