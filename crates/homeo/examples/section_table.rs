@@ -52,7 +52,8 @@ fn run(arguments: &[String]) -> Result<bool, String> {
     let start = textured(file)?;
     let count = start.surface.complex().cell_count();
     let begin = clock();
-    let (shell, _) = build(&start.surface, &ShellParams::default(), &Silent).map_err(|error| error.to_string())?;
+    let (shell, _) = build(&start.surface, &ShellParams { may_thin: false, ..ShellParams::default() }, &Silent)
+        .map_err(|error| error.to_string())?;
     let spent = seconds_since(&begin);
     println!("| {name} | shell | {count} | {} prisms | {spent:.1} | | | |", shell.parts().prisms.len());
     let mut is_all_certified = true;

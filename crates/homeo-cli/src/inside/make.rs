@@ -120,7 +120,7 @@ fn run(
     let advice = "only `homeo shell --immersed` takes surfaces that cross themselves";
     let crossings = shell::Crossings::Refused { advice };
     let source = source_mesh(&mesh.file, shell::unfit(session, &mesh, options.triangulate, crossings)?);
-    let params = ShellParams { thickness: options.thickness, ..ShellParams::default() };
+    let params = ShellParams { thickness: options.thickness, may_thin: false, ..ShellParams::default() };
     let shell = shell::construct_in_time(session, &source, &params)?;
     let carried = texture::of_file(&mesh.file);
     if carried.is_none() && mesh.file.attribute("texture", Element::Corner).is_some() {

@@ -76,7 +76,7 @@ impl Surface {
     /// The triangles among `near` that may have an area in common with a prism; L4 for those that have.
     pub fn contents(&self, prism: &Prism, near: &[u32]) -> Result<Contents, FailureIn> {
         let hull = prism.hull();
-        let walls = [0, 1].map(|slab| prism.outer_walls(slab));
+        let walls = prism.outer_walls();
         let mut contents = Contents::default();
         for &t in near {
             let triangle = self.corners[t as usize];
@@ -146,6 +146,8 @@ pub(super) struct Layer {
     pub around: Vec<Vec<u32>>,
     /// What each prism holds.
     pub contents: Vec<Contents>,
+    /// Whether operations may make columns shorter.
+    pub may_shorten: bool,
     /// What is to stay, apart from the boundary.
     pub kept: Kept,
     /// Round surfaces that may cross themselves.
@@ -174,6 +176,7 @@ impl Layer {
             exists: vec![true; prisms.len()],
             around: triangles_around(base.complex()),
             contents: vec![Contents::default(); prisms.len()],
+            may_shorten: false,
             kept: Kept::new(base, &params.frozen, params.feature_angle),
             sheets: None,
             prisms,
@@ -260,7 +263,7 @@ impl Layer {
         self.check_angles(old, &contents)?;
         match self.sheets {
             None => bodies.iter().try_for_each(|body| self.surface.check_caps(body, None))?,
-            Some(_) => self.check_replaced(old, new, &contents)?,
+            Some(_) => self.check_replaced(old, &bodies, new, &contents)?,
         }
         for &prism in old {
             for column in self.prisms[prism as usize] {

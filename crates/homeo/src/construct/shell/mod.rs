@@ -40,6 +40,9 @@ pub struct ShellParams {
     /// Whether the surface may cross itself in space. The shell is then one of the abstract surface: it says which
     /// triangles belong to which prisms, and sheets that cross do not see each other.
     pub immersed: bool,
+    /// Whether operations may make columns shorter, once they come to change little without. It gives fewer prisms and a
+    /// thinner shell; for sections a thicker one with more prisms is better, as they keep nearer to the source in it.
+    pub may_thin: bool,
     /// No operation makes an angle between a pillar and the normal of a triangle that it crosses larger than this, in
     /// radians, but where there was such an angle. Nowhere a right one; less than that bounds how the projection stretches.
     pub largest_angle: f64,
@@ -57,6 +60,7 @@ impl Default for ShellParams {
             prisms: 0,
             rounds: 30,
             immersed: false,
+            may_thin: true,
             largest_angle: LARGEST_ANGLE.to_radians(),
             feature_angle: None,
             frozen: Vec::new(),
@@ -393,7 +397,11 @@ fn simplify(
         simplify::thicken(layer, target);
         info.collapses += simplify::collapse_edges(layer, params.prisms, progress);
         if layer.count() as f64 > 0.999 * before as f64 && info.rounds > 3 {
-            break;
+            if layer.may_shorten || !params.may_thin {
+                break;
+            }
+            // Only now: what lies in a thick shell can be coarser.
+            layer.may_shorten = true;
         }
     }
     Ok(())

@@ -1,6 +1,8 @@
 //! One prism of a shell against one triangle: the exact checks that the construction of shells (prisms change, the
 //! surface stays) and that of sections (the surface changes, prisms stay) have in common.
 
+use std::sync::OnceLock;
+
 use homeo_core::predicate::{
     Sign, crossing_sign, orient3d, quick_crossing_sign, segment_meets_triangle, share_area, triangles_meet,
     triangles_meet_beyond_vertex,
@@ -39,6 +41,8 @@ pub(in crate::construct) enum Failure {
 pub(in crate::construct) struct Prism {
     columns: [Column; 3],
     pinched: [bool; 3],
+    /// What [`outer_walls`](Self::outer_walls) gives for each slab, once it was asked for.
+    outer_walls: OnceLock<[Vec<[Point; 3]>; 2]>,
 }
 
 /// Whether a column has no length.
@@ -48,7 +52,7 @@ pub(in crate::construct) fn is_pinched([bottom, middle, top]: Column) -> bool {
 
 impl Prism {
     pub fn new(columns: [Column; 3]) -> Self {
-        Self { columns, pinched: columns.map(is_pinched) }
+        Self { columns, pinched: columns.map(is_pinched), outer_walls: OnceLock::new() }
     }
 
     /// The box that holds the prism.
@@ -143,10 +147,10 @@ impl Prism {
             || SLABS.into_iter().any(|slab| self.tetrahedra(slab).any(has_edge_in))
     }
 
-    /// Whether a triangle lies off the prism, beyond a plane through one of its sides; `false` says nothing.
-    pub fn is_clearly_off(&self, triangle: [Point; 3], outer_walls: &[Vec<[Point; 3]>; 2]) -> bool {
-        let is_beyond = |wall: &[Point; 3]| triangle.iter().all(|&p| side(*wall, p) == Sign::Positive);
-        !self.hull().meets(&Aabb::of(&triangle)) || outer_walls.iter().all(|walls| walls.iter().any(is_beyond))
+    /// Whether the hull of some points is off the prism, for each slab beyond one of its outer walls; `false` says nothing.
+    pub fn is_clearly_off(&self, points: &[Point]) -> bool {
+        let is_beyond = |wall: &[Point; 3]| points.iter().all(|&p| side(*wall, p) == Sign::Positive);
+        !self.hull().meets(&Aabb::of(points)) || self.outer_walls().iter().all(|walls| walls.iter().any(is_beyond))
     }
 
     /// Whether all pillars of a slab cross a triangle in the positive sense: with this, L4 holds for the pair.
@@ -190,8 +194,12 @@ impl Prism {
         true
     }
 
-    /// Planes through sides of a slab, and its top and bottom, with all of it on their negative side.
-    pub fn outer_walls(&self, slab: usize) -> Vec<[Point; 3]> {
+    /// For each slab the planes through its sides, top and bottom that have all of it on their negative side.
+    pub fn outer_walls(&self) -> &[Vec<[Point; 3]>; 2] {
+        self.outer_walls.get_or_init(|| [0, 1].map(|slab| self.find_outer_walls(slab)))
+    }
+
+    fn find_outer_walls(&self, slab: usize) -> Vec<[Point; 3]> {
         let slab = SLABS[slab];
         let points: Vec<Point> = self.columns.iter().flat_map(|column| slab.map(|level| column[level])).collect();
         let is_outer = |wall: &[Point; 3]| {

@@ -139,40 +139,43 @@ impl Layer {
     /// Whether nothing is missing in a prism: rules I3 and I4.
     pub fn is_complete(&self, prism: u32) -> bool {
         let corners = self.prisms[prism as usize];
-        self.check_complete(corners, &self.contents[prism as usize].triangles, &[prism]).is_ok()
+        self.check_complete(&self.prism(corners), corners, &self.contents[prism as usize].triangles, &[prism]).is_ok()
     }
 
     /// Those of some triangles that may belong to a prism instead of the prisms that held them, if they satisfy L4.
     pub fn belonging(&self, body: &Prism, held: &[u32]) -> Result<Contents, FailureIn> {
-        let walls = [0, 1].map(|slab| body.outer_walls(slab));
-        let mut belonging = held.to_vec();
-        belonging.retain(|&t| !body.is_clearly_off(self.surface.corners[t as usize], &walls));
-        let cosine = self.surface.contents(body, &belonging)?.cosine;
-        Ok(Contents { triangles: belonging, cosine })
+        let Contents { triangles, cosine } = self.surface.contents(body, held)?;
+        // Those that merely touch it belong, too.
+        let is_off = |t: &u32| body.is_clearly_off(&self.surface.corners[*t as usize]);
+        let belongs = |t: &u32| triangles.binary_search(t).is_ok() || !is_off(t);
+        Ok(Contents { triangles: held.iter().copied().filter(belongs).collect(), cosine })
     }
 
     /// L3 for prisms in the place of others, and whether what belongs to them is complete.
-    pub fn check_replaced(&self, old: &[u32], new: &[[u32; 3]], contents: &[Contents]) -> Result<(), FailureIn> {
-        for (&corners, contents) in new.iter().zip(contents) {
-            self.check_l3(&self.prism(corners), corners, Some(&contents.triangles))?;
-            self.check_complete(corners, &contents.triangles, old)?;
+    pub fn check_replaced(
+        &self,
+        old: &[u32],
+        bodies: &[Prism],
+        new: &[[u32; 3]],
+        contents: &[Contents],
+    ) -> Result<(), FailureIn> {
+        for ((body, &corners), contents) in bodies.iter().zip(new).zip(contents) {
+            self.check_l3(body, corners, Some(&contents.triangles))?;
+            self.check_complete(body, corners, &contents.triangles, old)?;
         }
         Ok(())
     }
 
     /// I4 for a prism, and I3 for its walls to prisms that are none of the given ones. (Between new prisms it holds: what
     /// meets a wall is off neither of the prisms beside it.)
-    fn check_complete(&self, corners: [u32; 3], contents: &[u32], not: &[u32]) -> Result<(), FailureIn> {
+    fn check_complete(&self, body: &Prism, corners: [u32; 3], contents: &[u32], not: &[u32]) -> Result<(), FailureIn> {
         let Some(sheets) = &self.sheets else { return Ok(()) };
-        let body = self.prism(corners);
+        let is_met = |edge: [Point; 2]| !body.is_clearly_off(&edge) && body.meets_segment(edge);
         let is_missing = |t: u32| contents.binary_search(&t).is_err();
-        let goes_on = |&t: &u32| {
-            let mut beyond = sheets.beyond(t);
-            beyond.any(|(k, other)| is_missing(other) && body.meets_segment(self.edge(t, k)))
-        };
+        let goes_on = |&t: &u32| sheets.beyond(t).any(|(k, other)| is_missing(other) && is_met(self.edge(t, k)));
         let goes_through = |k: usize| {
             let beyond = self.prism_beyond(corners, k, not);
-            beyond.is_some_and(|other| !self.missing_beyond(&body, k, contents, other).is_empty())
+            beyond.is_some_and(|other| !self.missing_beyond(body, k, contents, other).is_empty())
         };
         let is_complete = !contents.iter().any(goes_on) && !(0..3).any(goes_through);
         if is_complete { Ok(()) } else { Err((Failure::Cap, 0)) }

@@ -78,14 +78,15 @@ fn collapse(layer: &mut Layer, gone: u32, kept: u32) -> bool {
     is_done
 }
 
-/// Replaces prisms by others if the shell stays valid; where new ones are not positive, with shorter columns.
+/// Replaces prisms by others if the shell stays valid; where new ones are not positive, with shorter columns, if the layer
+/// allows that.
 ///
 /// Columns that lean, as they do along sharp edges, make prisms positive only if they are short beside the triangles'
 /// heights, and growth has made them as long as they could be.
 fn replace(layer: &mut Layer, old: &[u32], new: &[[u32; 3]]) -> bool {
     match layer.replace(old, new) {
         Ok(()) => return true,
-        Err((Failure::Volume, _)) => {}
+        Err((Failure::Volume, _)) if layer.may_shorten => {}
         Err(_) => return false,
     }
     let mut shorter: Vec<(u32, Column)> = Vec::new();
