@@ -1,5 +1,4 @@
 //! Shells: valid ones, a negative control for every rule L1 to L6, and random mutations judged by an oracle.
-#![allow(clippy::print_stdout)] // counts, for people
 
 mod support;
 

@@ -120,7 +120,7 @@ impl Exact {
 
     fn has_boundary_pairs(&self, pairs: &BTreeSet<[usize; 2]>) -> bool {
         let cell_at = |cells: &[Vec<u32>], edge: [u32; 2]| {
-            cells.iter().position(|cell| directed_edges(&[cell.clone()]).contains(&edge)).expect("a cell")
+            cells.iter().position(|cell| directed_edges(std::slice::from_ref(cell)).contains(&edge)).expect("a cell")
         };
         let of_source = boundary(&self.cells);
         boundary(&self.prisms).into_iter().all(|edge| {

@@ -378,13 +378,13 @@ impl Exact {
             |rows: &[Vec<f64>]| -> Vec<Rational> { rows.iter().map(|p| rational([p[0], p[1], p[2]])).collect() };
         let positions = points(&map.positions);
         let corners = |cell: &Vec<u32>| [0, 1, 2].map(|i| positions[cell[i] as usize].clone());
-        let pairs = map.pairs.iter().map(|pairs| pairs.iter().map(|pair| pair.map(|n| n as usize)).collect());
+        let set = |pairs: &Vec<[u32; 2]>| pairs.iter().map(|pair| pair.map(|n| n as usize)).collect();
         Exact {
             cells: map.source_cells.clone(),
             triangles: map.source_cells.iter().map(corners).collect(),
             levels: map.levels.iter().map(|level| points(level)).collect(),
             prisms: map.prisms.clone(),
-            pairs: pairs.last(),
+            pairs: map.pairs.as_ref().map(set),
         }
     }
 

@@ -7,8 +7,8 @@
 //!              columns are fixed; directions by the point of a convex hull nearest to the origin.
 //! Arithmetic:  every accepted operation is decided by exact signs; directions, lengths and energies only guide.
 //! Cost:        about proportional to the triangles, times what a prism comes to hold.
-//! Fails when:  the surface crosses or touches itself, or two singular vertices are neighbours on the boundary
-//!              -> [`ShellError`].
+//! Fails when:  the surface crosses or touches itself (where it may: round one vertex), or two singular vertices are
+//!              neighbours on the boundary -> [`ShellError`].
 //! See:         `docs/theory/shells.md`.
 
 mod base;
