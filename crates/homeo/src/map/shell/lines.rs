@@ -158,7 +158,9 @@ impl Shell {
     /// The triangles of a section that a pillar line of a prism may meet, ascending.
     fn candidates<T: Scalar>(&self, surface: &ShellSurface, prism: u32, line: &Fibre<T>) -> Vec<u32> {
         let mut candidates = surface.near(line);
-        candidates.retain(|&triangle| self.parts.are_paired(triangle, prism));
+        // Pairs are about the source; another section is asked for as a whole.
+        let is_source = std::ptr::eq(surface, &self.source);
+        candidates.retain(|&triangle| !is_source || self.parts.are_paired(triangle, prism));
         candidates
     }
 

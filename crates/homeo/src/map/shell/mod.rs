@@ -131,7 +131,8 @@ impl Shell {
         }
     }
 
-    /// The same shell, with another section as the image of the source.
+    /// The same shell, with another section as the image of the source. For a shell of a surface that may cross itself
+    /// the format knows no such map, and there is no theorem about it here.
     #[must_use]
     pub fn with_section(self, section: SourceMesh<3>) -> Self {
         Self { section: Some(ShellSurface::new(section)), ..self }
