@@ -145,3 +145,56 @@ fn points_outside_and_impossible_places_are_errors() {
         assert!(shell.to_source_exact(&wrong).is_err());
     }
 }
+
+/// A strip rolled up in more than two turns: its sheets lie close over one another, with one orientation.
+fn roll(turns: f64, n: u32) -> SourceMesh<3> {
+    let point = |i: u32| {
+        let angle = f64::from(i / 3) / f64::from(n) * turns * std::f64::consts::TAU;
+        let radius = 1.0 + 0.05 * angle / std::f64::consts::TAU;
+        [radius * angle.cos(), radius * angle.sin(), 0.4 * f64::from(i % 3)]
+    };
+    let squares = (0..n).flat_map(|i| (0..2).map(move |j| 3 * i + j));
+    let triangles: Vec<[u32; 3]> = squares.flat_map(|v| [[v, v + 3, v + 4], [v, v + 4, v + 1]]).collect();
+    surface((0..3 * (n + 1)).map(point).collect(), &triangles)
+}
+
+/// A sphere of `n` by `m` quadrilaterals round an axis.
+fn sphere(n: u32, m: u32, radius: f64) -> SourceMesh<3> {
+    let point = |i: u32, j: u32| {
+        let [s, t] = [[i, n], [2 * j, m]].map(|[k, of]| std::f64::consts::PI * f64::from(k) / f64::from(of));
+        [s.sin() * t.cos(), s.sin() * t.sin(), s.cos()].map(|x| radius * x)
+    };
+    let mut points: Vec<Point> = (1..n).flat_map(|i| (0..m).map(move |j| point(i, j))).collect();
+    points.extend([[0.0, 0.0, radius], [0.0, 0.0, -radius]]);
+    let at = |i: u32, j: u32| (i - 1) * m + j % m;
+    let poles = (n - 1) * m;
+    let caps = (0..m).flat_map(|j| [[poles, at(1, j), at(1, j + 1)], [poles + 1, at(n - 1, j + 1), at(n - 1, j)]]);
+    let squares = (1..n - 1).flat_map(|i| (0..m).map(move |j| (i, j)));
+    let sides = squares
+        .flat_map(|(i, j)| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]);
+    surface(points, &caps.chain(sides).collect::<Vec<_>>())
+}
+
+/// Several surfaces as one.
+fn together(parts: &[SourceMesh<3>]) -> SourceMesh<3> {
+    let mut points = Vec::new();
+    let mut triangles = Vec::new();
+    for part in parts {
+        let shift = points.len() as u32;
+        triangles.extend(part.complex().cells().iter().map(|cell| cell.map(|v| v.raw() + shift)));
+        points.extend_from_slice(part.positions());
+    }
+    surface(points, &triangles)
+}
+
+#[test]
+fn sheets_of_one_orientation_are_told_apart() {
+    let nested = [1.0, 0.97, 0.94].map(|radius| sphere(10, 14, radius));
+    for source in [together(&nested), roll(2.6, 40)] {
+        for thickness in [0.1, 0.5] {
+            let params = ShellParams { thickness, rounds: 4, ..ShellParams::default() };
+            let shell = build(&source, &params, &Silent).expect("a shell").0;
+            check_round_trips(&shell, 17);
+        }
+    }
+}

@@ -23,6 +23,7 @@ pub(super) type Among<'t> = Option<&'t [u32]>;
 
 /// The source surface, as the checks need it.
 pub(super) struct Surface {
+    triangles: Vec<[u32; 3]>,
     pub corners: Vec<[Point; 3]>,
     /// Unit normals, rounded.
     normals: Vec<Point>,
@@ -33,14 +34,15 @@ pub(super) struct Surface {
 
 impl Surface {
     pub fn new(source: &SourceMesh<3>, least_cosine: f64) -> Self {
-        let corner = |v: &homeo_core::mesh::VertexId| source.positions()[v.index()];
+        let triangles: Vec<[u32; 3]> = source.complex().cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
         let corners: Vec<[Point; 3]> =
-            source.complex().cells().iter().map(|cell| std::array::from_fn(|k| corner(&cell[k]))).collect();
+            triangles.iter().map(|cell| cell.map(|v| source.positions()[v as usize])).collect();
         let boxes: Vec<Aabb> = corners.iter().map(|triangle| Aabb::of(triangle)).collect();
         Self {
             least_cosine,
             tree: Tree::new(&boxes),
             normals: corners.iter().map(|&c| unit_normal(c)).collect(),
+            triangles,
             corners,
         }
     }
@@ -111,6 +113,20 @@ impl Surface {
             }
         }
         Ok(contents)
+    }
+
+    /// Whether what a prism over a triangle holds is one piece of the surface round that triangle. Another sheet may be
+    /// crossed in the positive sense too, where sheets of one orientation lie over one another.
+    fn check_one_sheet(&self, prism: &Prism, triangle: u32, contents: &[u32]) -> Result<(), FailureIn> {
+        let touches =
+            |t: u32, u: u32| self.triangles[t as usize].iter().any(|v| self.triangles[u as usize].contains(v));
+        let mut others: Vec<u32> = contents.iter().copied().filter(|&t| t != triangle).collect();
+        let mut reached = vec![triangle];
+        while let Some(t) = reached.pop() {
+            reached.extend(others.extract_if(.., |other| touches(t, *other)));
+        }
+        let is_held = |slab: usize| others.iter().any(|&t| prism.shares_area(slab, self.corners[t as usize]));
+        (0..2).find(|&slab| is_held(slab)).map_or(Ok(()), |slab| Err((Failure::Sheet, slab)))
     }
 }
 
@@ -196,13 +212,20 @@ impl Layer {
         self.prism(self.prisms[prism as usize]).check_volumes()
     }
 
-    /// Finds the contents of prisms that satisfy L2 among all source triangles, and checks L3 and L4. Returns those that
-    /// fail, in the order given, with what fails first.
-    pub fn fill(&mut self, prisms: &[u32]) -> Vec<(u32, FailureIn)> {
+    /// Finds the contents of prisms that satisfy L2 among all source triangles, and checks L3, L4 and that they are one
+    /// sheet round the triangles over which the prisms stand, their `parents`. Returns those that fail, in the order given,
+    /// with what fails first.
+    pub fn fill(&mut self, prisms: &[u32], parents: &[u32]) -> Vec<(u32, FailureIn)> {
         if self.sheets.is_some() {
-            return self.fill_by_sheets(prisms);
+            return self.fill_by_sheets(prisms, parents);
         }
-        let found: Vec<_> = prisms.par_iter().map(|&prism| self.find_contents(prism)).collect();
+        let find = |&prism: &u32| {
+            let contents = self.find_contents(prism)?;
+            let body = self.prism(self.prisms[prism as usize]);
+            self.surface.check_one_sheet(&body, parents[prism as usize], &contents.triangles)?;
+            Ok(contents)
+        };
+        let found: Vec<_> = prisms.par_iter().map(find).collect();
         let mut failures = Vec::new();
         for (&prism, found) in prisms.iter().zip(found) {
             match found {

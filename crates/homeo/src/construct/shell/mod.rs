@@ -227,7 +227,7 @@ fn thinned(
 ) -> Result<Thinned, ShellError> {
     let mut thinning = Thinning::new(source, base, first_lengths(&base.mesh, target), params);
     if params.immersed {
-        thinning.layer.sheets = Some(Sheets::new(source, &base.parents)?);
+        thinning.layer.sheets = Some(Sheets::new(source)?);
     }
     loop {
         if let Some(stuck) = thinning.make_positive(progress)? {
@@ -242,7 +242,7 @@ fn thinned(
             if progress.is_cancelled() {
                 return Err(ShellError::Cancelled);
             }
-            failures.extend(thinning.layer.fill(some));
+            failures.extend(thinning.layer.fill(some, &base.parents));
         }
         unfilled.iter().for_each(|&prism| thinning.is_filled[prism as usize] = true);
         failures.iter().for_each(|&(prism, _)| thinning.is_filled[prism as usize] = false);
@@ -354,7 +354,7 @@ fn column(base: &Base, v: usize, reach: [f64; 2]) -> Column {
 fn reason(failure: Failure) -> &'static str {
     match failure {
         Failure::Volume => "its prism does not become positive",
-        Failure::Cap => "the surface comes too close to itself",
+        Failure::Cap | Failure::Sheet => "the surface comes too close to itself",
         Failure::Crossing => "a triangle near it is crossed the wrong way",
         Failure::Wall => "the surface comes too close to its boundary",
         Failure::Angle => "a triangle near it is nearly parallel to a pillar",

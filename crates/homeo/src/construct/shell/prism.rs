@@ -31,6 +31,8 @@ pub(in crate::construct) enum Failure {
     Cap,
     /// L4: a pillar crosses a triangle the wrong way.
     Crossing,
+    /// Two sheets of the surface lie in one prism.
+    Sheet,
     /// L3: a wall over the boundary meets the surface off its edge.
     Wall,
     /// A pillar is farther from a triangle's normal than is wanted, which the theorem does not care about.

@@ -19,17 +19,15 @@ type Point = [f64; 3];
 /// How the source's triangles are joined.
 pub(super) struct Sheets {
     neighbours: Adjacency<3>,
-    /// The triangle over which each prism of the first layer stands.
-    parents: Vec<u32>,
 }
 
 impl Sheets {
     /// # Errors
     /// When more than two triangles share an edge.
-    pub fn new(source: &SourceMesh<3>, parents: &[u32]) -> Result<Self, ShellError> {
+    pub fn new(source: &SourceMesh<3>) -> Result<Self, ShellError> {
         let reason = "more than two triangles share an edge";
         let neighbours = source.complex().adjacency().map_err(|_| ShellError::Stuck { triangle: 0, reason })?;
-        Ok(Self { neighbours, parents: parents.to_vec() })
+        Ok(Self { neighbours })
     }
 
     /// The triangles beyond the edges of a triangle, each with the position of the corner opposite its edge.
@@ -41,10 +39,10 @@ impl Sheets {
 
 impl Layer {
     /// Like [`fill`](Self::fill): what belongs to the prisms, and L3 and L4 for that. Prisms beside them may come to hold
-    /// more; they are checked too.
-    pub fn fill_by_sheets(&mut self, prisms: &[u32]) -> Vec<(u32, FailureIn)> {
+    /// more; they are checked too, and the order of those that fail is that of their numbers.
+    pub fn fill_by_sheets(&mut self, prisms: &[u32], parents: &[u32]) -> Vec<(u32, FailureIn)> {
         let Some(sheets) = &self.sheets else { return Vec::new() };
-        let first = |&prism: &u32| self.spread(sheets, prism, vec![sheets.parents[prism as usize]]);
+        let first = |&prism: &u32| self.spread(sheets, prism, vec![parents[prism as usize]]);
         let found: Vec<Vec<u32>> = prisms.par_iter().map(first).collect();
         for (&prism, found) in prisms.iter().zip(found) {
             self.contents[prism as usize].triangles = found;
