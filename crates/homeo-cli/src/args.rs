@@ -176,8 +176,11 @@ pub struct ShellArgs {
     #[arg(long, value_name = "N", default_value_t = 30)]
     pub rounds: usize,
     /// Let the surface cross itself in space: the map is one of abstract surfaces, and the certificate says so
-    #[arg(long)]
+    #[arg(long, conflicts_with = "embedded")]
     pub immersed: bool,
+    /// A shell that does not overlap itself anywhere, as nested cages have to be; it is thinner where sheets are close
+    #[arg(long)]
+    pub embedded: bool,
     /// Let no pillar come farther than A degrees from the normal of a triangle that it crosses, where none was before
     #[arg(long, value_name = "A", default_value_t = 89.95, value_parser = right_angle)]
     pub largest_angle: f64,

@@ -167,6 +167,7 @@ fn surfaces_that_cross_themselves_need_the_option() {
     assert_eq!(verified["certificate"], made["certificate"]);
     folder.line("report m.homeo -o again.html -q").expect(0);
     assert!(["m.html", "again.html"].iter().all(|page| folder.text(page).contains("abstract surfaces")));
+    folder.line("shell c.obj --immersed --embedded -o m.homeo").expect(2);
     for verb in ["simplify c.obj --to 50%", "remesh c.obj --edge 1"] {
         let run = folder.line(&format!("{verb} -o s.obj")).expect(3);
         assert!(run.stderr.contains("only `homeo shell --immersed`"), "{}", run.stderr);

@@ -36,6 +36,7 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
         prisms: options.prisms,
         rounds: options.rounds,
         immersed: options.immersed,
+        embedded: options.embedded,
         may_thin: true,
         largest_angle: options.largest_angle.to_radians(),
         feature_angle: options.features.map(f64::to_radians),

@@ -10,6 +10,7 @@ use super::directions::{dot, minus, triangles_around, unit_normal};
 use super::kept::Kept;
 use super::prism::{Column, Failure, FailureIn, Prism, is_inside_wall, is_outside, is_pinched, sides};
 use super::sheets::Sheets;
+use super::skin::{Face, Skin};
 use crate::input::SourceMesh;
 use crate::map::ShellParts;
 
@@ -164,6 +165,8 @@ pub(super) struct Layer {
     pub contents: Vec<Contents>,
     /// Whether operations may make columns shorter.
     pub may_shorten: bool,
+    /// Bottoms, tops and walls, if the shell is not to overlap itself.
+    skin: Option<Skin>,
     /// What is to stay, apart from the boundary.
     pub kept: Kept,
     /// Round surfaces that may cross themselves.
@@ -193,6 +196,7 @@ impl Layer {
             around: triangles_around(base.complex()),
             contents: vec![Contents::default(); prisms.len()],
             may_shorten: false,
+            skin: None,
             kept: Kept::new(base, &params.frozen, params.feature_angle),
             sheets: None,
             prisms,
@@ -288,6 +292,7 @@ impl Layer {
             None => bodies.iter().try_for_each(|body| self.surface.check_caps(body, None))?,
             Some(_) => self.check_replaced(old, &bodies, new, &contents)?,
         }
+        self.replace_skin(old, new)?;
         for &prism in old {
             for column in self.prisms[prism as usize] {
                 self.around[column as usize].retain(|&other| other != prism);
@@ -316,6 +321,30 @@ impl Layer {
     pub fn largest_angle(&self) -> f64 {
         let existing = self.contents.iter().zip(&self.exists).filter(|(_, exists)| **exists);
         existing.map(|(contents, _)| contents.cosine).fold(1.0, f64::min).acos()
+    }
+
+    /// Gives the new prisms, which get numbers of the old ones in their order, their places in the skin, if there is one and
+    /// it does not meet itself then.
+    fn replace_skin(&mut self, old: &[u32], new: &[[u32; 3]]) -> Result<(), FailureIn> {
+        let Some(skin) = &mut self.skin else { return Ok(()) };
+        let caps: Vec<[Face; 2]> =
+            old.iter().zip(new).map(|(&prism, &corners)| Face::caps(prism, corners, &self.columns)).collect();
+        if !skin.admits(old, &caps) {
+            return Err((Failure::Skin, 0));
+        }
+        skin.replace(old, caps);
+        Ok(())
+    }
+
+    /// From now on the shell must not overlap itself. Returns the prisms that are too thick for that, and their slabs,
+    /// ascending; if there are any, nothing is kept.
+    pub fn keep_apart(&mut self) -> Vec<(u32, usize)> {
+        let skin = Skin::new(&self.prisms, &self.columns, |side| self.boundary.contains(&side));
+        let mut clashing: Vec<(u32, usize)> = skin.clashing().map(|face| (face.owner.prism(), face.slab)).collect();
+        clashing.sort_unstable();
+        clashing.dedup();
+        self.skin = clashing.is_empty().then_some(skin);
+        clashing
     }
 
     /// Accepts a column that was changed, if its prisms satisfy L2 to L4.

@@ -18,6 +18,7 @@ pub(in crate::construct) mod layer;
 pub(in crate::construct) mod prism;
 mod sheets;
 mod simplify;
+mod skin;
 
 use crate::input::SourceMesh;
 use crate::map::Shell;
@@ -40,6 +41,8 @@ pub struct ShellParams {
     /// Whether the surface may cross itself in space. The shell is then one of the abstract surface: it says which
     /// triangles belong to which prisms, and sheets that cross do not see each other.
     pub immersed: bool,
+    /// Whether the shell must not overlap itself anywhere in space: bottoms, tops and walls do not meet.
+    pub embedded: bool,
     /// Whether operations may make columns shorter, once they come to change little without. It gives fewer prisms and a
     /// thinner shell; for sections a thicker one with more prisms is better, as they keep nearer to the source in it.
     pub may_thin: bool,
@@ -60,6 +63,7 @@ impl Default for ShellParams {
             prisms: 0,
             rounds: 30,
             immersed: false,
+            embedded: false,
             may_thin: true,
             largest_angle: LARGEST_ANGLE.to_radians(),
             feature_angle: None,
@@ -235,7 +239,16 @@ fn thinned(
         }
         let unfilled: Vec<u32> = (0..).zip(&thinning.is_filled).filter(|(_, full)| !**full).map(|(p, _)| p).collect();
         if unfilled.is_empty() {
-            return Ok(Thinned::Layer(Box::new(thinning.layer)));
+            let clashing = if params.embedded { thinning.layer.keep_apart() } else { Vec::new() };
+            if clashing.is_empty() {
+                return Ok(Thinned::Layer(Box::new(thinning.layer)));
+            }
+            for (prism, slab) in clashing {
+                if let Some(stuck) = thinning.shorten(prism, (Failure::Skin, slab)) {
+                    return Ok(Thinned::Stuck(stuck));
+                }
+            }
+            continue;
         }
         let mut failures = Vec::new();
         for some in unfilled.chunks(FILLED_AT_A_TIME) {
@@ -354,7 +367,7 @@ fn column(base: &Base, v: usize, reach: [f64; 2]) -> Column {
 fn reason(failure: Failure) -> &'static str {
     match failure {
         Failure::Volume => "its prism does not become positive",
-        Failure::Cap | Failure::Sheet => "the surface comes too close to itself",
+        Failure::Cap | Failure::Sheet | Failure::Skin => "the surface comes too close to itself",
         Failure::Crossing => "a triangle near it is crossed the wrong way",
         Failure::Wall => "the surface comes too close to its boundary",
         Failure::Angle => "a triangle near it is nearly parallel to a pillar",

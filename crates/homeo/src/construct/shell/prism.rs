@@ -31,6 +31,8 @@ pub(in crate::construct) enum Failure {
     Cap,
     /// L4: a pillar crosses a triangle the wrong way.
     Crossing,
+    /// The shell overlaps itself, and is not to.
+    Skin,
     /// Two sheets of the surface lie in one prism.
     Sheet,
     /// L3: a wall over the boundary meets the surface off its edge.
