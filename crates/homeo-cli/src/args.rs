@@ -163,7 +163,7 @@ The certificate is checked on the bytes that were written; only then do they get
 The middle surface of the first shell is the surface itself; simplification takes prisms away.
 When --timeout is reached then, the shell so far is checked and written.")]
 pub struct ShellArgs {
-    /// A surface, closed or open, that does not cross or touch itself
+    /// A surface, closed or open, that does not cross or touch itself; with --immersed it may cross itself
     #[arg(value_name = "MESH")]
     pub input: PathBuf,
     /// The map file to write
@@ -178,6 +178,9 @@ pub struct ShellArgs {
     /// Rounds of simplification at most; with 0 the middle surface is the surface itself
     #[arg(long, value_name = "N", default_value_t = 30)]
     pub rounds: usize,
+    /// Let the surface cross itself in space: the map is one of abstract surfaces, and the certificate says so
+    #[arg(long, conflicts_with = "embedded")]
+    pub immersed: bool,
     /// A shell that does not overlap itself anywhere, as nested cages have to be; it is thinner where sheets are close
     #[arg(long)]
     pub embedded: bool,

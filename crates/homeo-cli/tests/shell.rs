@@ -142,6 +142,73 @@ fn unfit_meshes_are_refused_with_their_elements() {
     folder.line("verify m.homeo --source flipped.off -q").expect(3);
 }
 
+/// Two tetrahedra that cross, as OBJ, the second moved.
+fn two_tetrahedra(offset: [f64; 3]) -> String {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let moved = corners.map(|c: [f64; 3]| [0, 1, 2].map(|axis| c[axis] + offset[axis]));
+    let points = corners.iter().chain(&moved).map(|[x, y, z]| format!("v {x} {y} {z}\n"));
+    let faces = [[1, 3, 2], [1, 2, 4], [2, 3, 4], [3, 1, 4]];
+    let faces = [0, 4].into_iter().flat_map(|first| faces.map(|face| face.map(|v| v + first)));
+    points.chain(faces.map(|[a, b, c]| format!("f {a} {b} {c}\n"))).collect()
+}
+
+#[test]
+fn surfaces_that_cross_themselves_need_the_option() {
+    let folder = Folder::new();
+    let crossing = two_tetrahedra([0.25, 0.125, 0.125]);
+    folder.write("c.obj", &crossing);
+    let run = folder.line("shell c.obj -o m.homeo").expect(3);
+    assert!(run.stderr.contains("self-intersection") && run.stderr.contains("--immersed"), "{}", run.stderr);
+    let made = folder.line("shell c.obj --immersed -o m.homeo --report m.html --json -q").expect(0).json();
+    assert_eq!([&made["target"], &made["certificate"]["target"]], ["immersed-shell"; 2]);
+    let statement = made["certificate"]["statement"].as_str().expect("a text");
+    assert!(statement.contains("immersed shells") && statement.contains("abstract surfaces"), "{statement}");
+    let verified = folder.line("verify m.homeo --source c.obj --json -q").expect(0).json();
+    assert_eq!(verified["certificate"], made["certificate"]);
+    folder.line("report m.homeo -o again.html -q").expect(0);
+    assert!(["m.html", "again.html"].iter().all(|page| folder.text(page).contains("abstract surfaces")));
+    folder.line("shell c.obj --immersed --embedded -o m.homeo").expect(2);
+    for verb in ["simplify c.obj --to 50%", "remesh c.obj --edge 1"] {
+        let run = folder.line(&format!("{verb} -o s.obj")).expect(3);
+        assert!(run.stderr.contains("only `homeo shell --immersed`"), "{}", run.stderr);
+    }
+    let run = folder.line("transfer m.homeo --from c.obj --onto c.obj -o s.obj --json").expect(3);
+    assert_eq!(run.json()["error"]["code"], "wrong-kind");
+    assert!(run.stderr.contains("--immersed"), "{}", run.stderr);
+}
+
+#[test]
+fn the_option_excuses_crossings_only() {
+    for (content, code) in [
+        (two_tetrahedra([1.0, 0.0, 0.0]), "coincident-vertices"),
+        (CLOSED.replace("3 0 2 1", "3 0 1 2"), "inconsistent-orientation"),
+    ] {
+        let folder = Folder::new();
+        let name = if content.starts_with("OFF") { "m.off" } else { "m.obj" };
+        folder.write(name, &content);
+        let run = folder.line(&format!("shell {name} --immersed -o m.homeo --json -q")).expect(3);
+        assert_eq!(run.json()["error"]["code"], code);
+    }
+}
+
+/// Where sheets cross, a point of space has no one image; elsewhere it has.
+#[test]
+fn points_in_two_sheets_are_ambiguous() {
+    let folder = Folder::new();
+    folder.write("c.obj", two_tetrahedra([0.25, 0.125, 0.125]));
+    folder.line("shell c.obj --immersed --rounds 0 --thickness 0.01 -o m.homeo -q").expect(0);
+    folder.write("apart.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n1.25,0.125,0.125\n0.25,0.125,1.125\n");
+    folder.line("eval m.homeo --points apart.csv --exact -o middle.csv -q").expect(0);
+    folder.line("eval m.homeo --points middle.csv --exact --inverse -o back.csv -q").expect(0);
+    assert_eq!(rationals(&folder.text("back.csv")), rationals(&folder.text("apart.csv")));
+    // On the slanted face of the first and the lower one of the second.
+    folder.write("cross.csv", "x,y,z\n0.5,0.375,0.125\n");
+    for options in ["", "--exact", "--outside nan"] {
+        let run = folder.line(&format!("eval m.homeo --points cross.csv {options}")).expect(3);
+        assert!(run.stderr.contains("row 1") && run.stderr.contains("overlap"), "{}", run.stderr);
+    }
+}
+
 #[test]
 fn an_open_surface_keeps_its_boundary() {
     let folder = Folder::new();

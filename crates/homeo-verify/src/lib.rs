@@ -123,9 +123,11 @@ pub fn compare_source(
 /// Applies every rule and puts the claim into words.
 fn check_map(map: &MapFile) -> Checked<Claim> {
     let checked = check_rules(map)?;
+    let is_immersed = map.manifest.target == Target::ImmersedShell;
     let (kind, theorem) = match map.manifest.kind {
         Kind::Foliation => ("foliation", "theorem on locally bipolar foliations, rules 1-8"),
         Kind::PiecewiseLinear => ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P"),
+        Kind::Shell if is_immersed => ("shell", "theorem on immersed shells, rules L1-L6 and I1-I4"),
         Kind::Shell => ("shell", "theorem on shells, rules L1-L6"),
     };
     let (target, onto) = match map.manifest.target {
@@ -135,6 +137,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::Ball => ("ball", "tetrahedron of the format, and by a fixed homeomorphism onto a round ball"),
         Target::Shell => ("shell", "middle surface"),
         Target::Section => ("section", "other section"),
+        Target::ImmersedShell => ("immersed-shell", "middle surface"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
     let mut statement = format!(
@@ -153,6 +156,13 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
             }
         );
         overlaps = "Away from the sections the shell may overlap itself in space; whether it does was not decided.";
+        if is_immersed {
+            statement.push_str(
+                " Both are meant as abstract surfaces, glued from their triangles: in space they may cross themselves.",
+            );
+            overlaps = "Surface and shell may cross themselves in space; whether they do was not decided. A point of \
+                        space where sheets cross has an image for each of them.";
+        }
     }
     let limits = [
         "The claim is about the complex with these cells and the exact rational map that the file defines.",

@@ -18,6 +18,9 @@ pub(crate) enum Target {
     Shell,
     /// Another section of a shell.
     Section,
+    /// The middle surface of a shell round a surface that may cross itself.
+    #[serde(rename = "immersed-shell")]
+    ImmersedShell,
 }
 
 impl Target {
@@ -98,8 +101,8 @@ impl Manifest {
         let is_possible = !is_radial || manifest.kind == Kind::Foliation;
         readable(is_possible, "only a foliation can reach the disk or the ball")?;
         let is_shell = manifest.kind == Kind::Shell;
-        let is_in_shell = matches!(manifest.target, Target::Shell | Target::Section);
-        readable(is_shell == is_in_shell, "kind shell and targets shell and section belong together")?;
+        let is_in_shell = matches!(manifest.target, Target::Shell | Target::Section | Target::ImmersedShell);
+        readable(is_shell == is_in_shell, "kind shell and targets shell, section and immersed-shell belong together")?;
         Ok(manifest)
     }
 }

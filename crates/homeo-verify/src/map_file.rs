@@ -48,6 +48,8 @@ pub(crate) struct ShellData {
     pub(crate) prisms: Vec<u32>,
     /// The points and triangles of another section, if it is the target.
     pub(crate) section: Option<(Vec<Point>, Vec<u32>)>,
+    /// A triangle and a prism each that belong together, if the source may cross itself.
+    pub(crate) pairs: Option<Vec<[u32; 2]>>,
 }
 
 impl MapFile {
@@ -165,6 +167,11 @@ impl ShellData {
         } else {
             None
         };
-        Ok(ShellData { levels: [bottom, middle, top], prisms, section })
+        let pairs = match target {
+            Target::ImmersedShell => Some(Array::take(archive, "shell_pairs")?.read(U4, None, 2)?),
+            _ => None,
+        };
+        let pairs = pairs.map(|flat| flat.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect());
+        Ok(ShellData { levels: [bottom, middle, top], prisms, section, pairs })
     }
 }

@@ -10,6 +10,11 @@
 //!
 //! Surfaces may have boundary edges, which both have in common. A directed boundary edge is known by its slot; as no two
 //! boundary vertices are at one point, also by the point where it starts.
+//!
+//! Round a surface that may cross itself, the file lists which triangle belongs to which prism. The rules then speak of
+//! these *pairs* only, and the rules I1 to I4 say what makes the list complete.
+
+mod pairs;
 
 use crate::complex::{Complex, UnionFind};
 use crate::links::check_manifold;
@@ -19,7 +24,7 @@ use crate::number::{
 };
 use crate::source::check_finite;
 use crate::triangles::{
-    BoxTree, Triangle, bounds, count_crossings, have_common_area, triangles_meet, triangles_meet_beyond,
+    Bounds, BoxTree, Triangle, bounds, count_crossings, have_common_area, triangles_meet, triangles_meet_beyond,
 };
 use crate::verdict::{Checked, Stop, check, decidable, refuted};
 use dashu_int::IBig;
@@ -42,6 +47,8 @@ struct Shell<'a> {
     boundary: Vec<[usize; 2]>,
     /// The boxes of the source's triangles.
     triangles: BoxTree,
+    /// The triangles and prisms that belong together; all do where there is no list.
+    pairs: Option<&'a [[u32; 2]]>,
 }
 
 /// Checks all rules of a shell for its source, and for the other section if there is one: then the projection of the one,
@@ -76,19 +83,23 @@ fn check_section(positions: &[Point], cells: &[u32], data: &ShellData) -> Checke
     let boundary = of_source.values().zip(of_middle.values()).map(|(a, b)| [a.1, b.1]).collect();
     let boxes: Vec<_> = source.cells().map(|cell| bounds(&corners(cell))).collect();
     let triangles = BoxTree::new(&boxes);
-    let shell = Shell { positions, source, levels, prisms, boundary, triangles };
-    Ok(vec![
+    let shell = Shell { positions, source, levels, prisms, boundary, triangles, pairs: data.pairs.as_deref() };
+    let tetrahedra = shell.check_tetrahedra()?;
+    let pairs = shell.check_pairs()?;
+    let mut checked = vec![
         ("vertices and columns with finite coordinates (rule S1)", (positions.len() + levels[0].len()) as u64),
         ("triangles of the source, an oriented surface (rules S2, L1)", shell.source.count() as u64),
         ("prisms over the middle, an oriented surface (rules S2, L1)", shell.prisms.count() as u64),
         ("boundary edges that both surfaces have (rule L1)", shell.boundary.len() as u64),
-        ("positive tetrahedra (rule L2)", shell.check_tetrahedra()?),
+        ("positive tetrahedra (rule L2)", tetrahedra),
         ("bottom and top triangles that the source avoids (rule L3)", shell.check_bottom_and_top()?),
         ("wall triangles over boundary edges that the source keeps inside of (rule L3)", shell.check_walls()?),
         ("slabs whose pillars cross the source in the positive sense (rule L4)", shell.check_pillars()?),
         ("components of the source with a point that the shell covers once (rule L5)", shell.check_preimages()?),
         ("components of the middle with a fibre that meets the source once (rule L6)", shell.check_fibres()?),
-    ])
+    ];
+    checked.extend(pairs.map(|count| ("pairs of a triangle and a prism, none missing (rules I1-I4)", count)));
+    Ok(checked)
 }
 
 /// The witness with the numbers that the section's triangles and vertices have: behind those of source and shell.
@@ -167,6 +178,17 @@ impl Shell<'_> {
         [0, 1, 2].map(|i| self.positions[cell[i] as usize])
     }
 
+    fn are_paired(&self, c: usize, q: usize) -> bool {
+        self.pairs.is_none_or(|pairs| pairs.binary_search(&[c as u32, q as u32]).is_ok())
+    }
+
+    /// The triangles that belong to a prism and whose boxes meet this one.
+    fn triangles_of(&self, q: usize, region: &Bounds) -> Vec<usize> {
+        let mut near = self.triangles.meeting(region);
+        near.retain(|&c| self.are_paired(c, q));
+        near
+    }
+
     fn point(&self, (column, level): Corner) -> Point {
         self.levels[level][column as usize]
     }
@@ -217,6 +239,14 @@ impl Shell<'_> {
         tetrahedra
     }
 
+    /// The triangles with corners on the side of a prism's slab, anticlockwise from inside; none has two equal points.
+    fn walls(&self, prism_slot: usize, low: usize) -> Vec<Triangle> {
+        let [i, j] = edge(&self.prisms, prism_slot);
+        let side = [(i, low), (i, low + 1), (j, low + 1), (j, low)].map(|corner| self.point(corner));
+        let walls = [0, 1, 2, 3].map(|n| [1, 2, 3].map(|k| side[(n + k) % 4]));
+        walls.into_iter().filter(|[a, b, c]| a != b && b != c && c != a).collect()
+    }
+
     /// L2: at most one column of a prism is pinched, and all tetrahedra are positive. Returns their number.
     fn check_tetrahedra(&self) -> Checked<u64> {
         let mut count = 0;
@@ -241,7 +271,7 @@ impl Shell<'_> {
             let pinched = cell.iter().find(|&&v| self.is_pinched(v)).map(|&v| self.point((v, 0)));
             for level in [0, 2] {
                 let end = [0, 1, 2].map(|i| self.point((cell[i], level)));
-                for c in self.triangles.meeting(&bounds(&end)) {
+                for c in self.triangles_of(q, &bounds(&end)) {
                     let triangle = self.triangle(c);
                     let do_meet = match pinched.filter(|p| triangle.contains(p)) {
                         Some(p) => triangles_meet_beyond(p, &triangle, &end),
@@ -264,14 +294,12 @@ impl Shell<'_> {
         const LEAVES: &str = "a triangle of the source does not lie inside of the wall over its boundary edge";
         let mut count = 0;
         for &[slot, prism_slot] in &self.boundary {
-            let ([v, w], [i, j]) = (edge(&self.source, slot), edge(&self.prisms, prism_slot));
+            let [v, w] = edge(&self.source, slot);
             let third = self.triangle(slot / 3)[slot % 3];
             for low in [0, 1] {
-                let side = [(i, low), (i, low + 1), (j, low + 1), (j, low)].map(|corner| self.point(corner));
-                let walls = [0, 1, 2, 3].map(|n| [1, 2, 3].map(|k| side[(n + k) % 4])); // anticlockwise from inside
-                for wall in walls.iter().filter(|[a, b, c]| a != b && b != c && c != a) {
+                for wall in &self.walls(prism_slot, low) {
                     count += 1;
-                    for c in self.triangles.meeting(&bounds(wall)) {
+                    for c in self.triangles_of(prism_slot / 3, &bounds(wall)) {
                         let (cell, triangle) = (self.source.cell(c), self.triangle(c));
                         let ends = [v, w].into_iter().filter(|end| cell.contains(end));
                         let common = ends.map(|end| self.positions[end as usize]).filter(|p| wall.contains(p));
@@ -295,7 +323,7 @@ impl Shell<'_> {
     /// L4: pillars cross the source triangles that have an area in the slab from below. Returns the number of slabs.
     fn check_pillars(&self) -> Checked<u64> {
         for slab in 0..self.slab_count() {
-            for c in self.triangles.meeting(&bounds(&self.slab_points(slab))) {
+            for c in self.triangles_of(slab / 2, &bounds(&self.slab_points(slab))) {
                 let triangle = self.triangle(c);
                 let [p, q, r] = triangle;
                 let is_from_below = |pillar| steps_orientation([[p, q], [p, r], pillar]) == Ordering::Greater;
@@ -320,7 +348,8 @@ impl Shell<'_> {
         let firsts = first_cells(&self.source);
         for &c in &firsts {
             let triangle = self.triangle(c);
-            let near = slabs.meeting(&bounds(&triangle));
+            let mut near = slabs.meeting(&bounds(&triangle));
+            near.retain(|slab| self.are_paired(c, slab / 2));
             try_weights(|weights| {
                 let carriers = self.carriers_over(&triangle, weights, &near);
                 let message = format!("a point of the source has {} preimages in the shell", carriers.len());
@@ -356,7 +385,7 @@ impl Shell<'_> {
         let firsts = first_cells(&self.prisms);
         for &q in &firsts {
             let points = [self.slab_points(2 * q), self.slab_points(2 * q + 1)];
-            let near = self.triangles.meeting(&bounds(points.as_flattened()));
+            let near = self.triangles_of(q, &bounds(points.as_flattened()));
             try_weights(|weights| {
                 let (fibre, sum) = (self.fibre(q, weights), weights.iter().sum());
                 let corners = |c: usize| self.triangle(c).map(|p| scaled(p, sum));

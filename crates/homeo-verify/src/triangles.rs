@@ -59,6 +59,15 @@ fn have_both_signs<const N: usize>(signs: [Ordering; N]) -> bool {
     signs.contains(&Ordering::Less) && signs.contains(&Ordering::Greater)
 }
 
+/// Whether a closed segment meets a closed tetrahedron, which is positive: it meets a face, or all of it is inside.
+pub(crate) fn segment_meets_tetrahedron(segment: [Point; 2], tetrahedron: &[Point; 4]) -> bool {
+    let [a, b, c, d] = *tetrahedron;
+    let [p, _] = segment;
+    let faces = [[p, b, c, d], [a, p, c, d], [a, b, p, d], [a, b, c, p]];
+    let is_inside = faces.iter().all(|&[a, b, c, d]| orientation_3d(a, b, c, d) != Ordering::Less);
+    is_inside || [[b, c, d], [a, c, d], [a, b, d], [a, b, c]].iter().any(|face| meets_segment(face, segment))
+}
+
 /// Whether a triangle and a closed tetrahedron have an area in common: no plane through three of their seven corners
 /// separates them. (The first four planes are those of the tetrahedron's faces.)
 pub(crate) fn have_common_area(tetrahedron: &[Point; 4], triangle: &Triangle) -> bool {
@@ -124,7 +133,7 @@ pub(crate) fn bounds(points: &[Point]) -> Bounds {
     points.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], around)
 }
 
-fn boxes_meet(a: &Bounds, b: &Bounds) -> bool {
+pub(crate) fn boxes_meet(a: &Bounds, b: &Bounds) -> bool {
     (0..3).all(|x| a[0][x] <= b[1][x] && b[0][x] <= a[1][x])
 }
 
@@ -250,6 +259,26 @@ mod tests {
             let has_area = span_an_area(&within_tetrahedron(&triangle.map(rational), &tetrahedron.map(rational)));
             assert_eq!(have_common_area(&tetrahedron, &triangle), has_area, "{tetrahedron:?} {triangle:?}");
             counts[usize::from(has_area)] += 1;
+        }
+        assert_balanced(counts, 1000);
+    }
+
+    #[test]
+    fn segments_meet_tetrahedra_as_clipping_finds() {
+        let (mut random, mut counts) = (Random(5), [0; 2]);
+        for k in 0..6000 {
+            let (mut tetrahedron, segment) = (random.tetrahedron(2 + k % 5), [0; 2].map(|_| random.point(2 + k % 5)));
+            if segment[0] == segment[1] {
+                continue;
+            }
+            let [a, b, c, d] = tetrahedron;
+            if orientation_3d(a, b, c, d) == Ordering::Less {
+                tetrahedron.swap(0, 1);
+            }
+            let common = within_tetrahedron(&segment.map(rational), &tetrahedron.map(rational));
+            let do_meet = segment_meets_tetrahedron(segment, &tetrahedron);
+            assert_eq!(do_meet, !common.is_empty(), "{segment:?} {tetrahedron:?}");
+            counts[usize::from(do_meet)] += 1;
         }
         assert_balanced(counts, 1000);
     }

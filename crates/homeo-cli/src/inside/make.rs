@@ -117,7 +117,9 @@ fn run(
     let format = targets.check(&[&options.input])?;
     let mesh = read(session, options)?;
     session.stage("check");
-    let source = source_mesh(&mesh.file, shell::unfit(session, &mesh, options.triangulate)?);
+    let advice = "only `homeo shell --immersed` takes surfaces that cross themselves";
+    let crossings = shell::Crossings::Refused { advice };
+    let source = source_mesh(&mesh.file, shell::unfit(session, &mesh, options.triangulate, crossings)?);
     let params = ShellParams { thickness: options.thickness, may_thin: false, ..ShellParams::default() };
     let shell = shell::construct_in_time(session, &source, &params)?;
     let carried = texture::of_file(&mesh.file);

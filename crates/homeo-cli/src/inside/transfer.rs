@@ -30,6 +30,11 @@ pub fn run(session: &Session, options: &TransferArgs, outputs: &mut Outputs) -> 
         let message = "the map is no shell: transfer needs one, as made by `homeo shell`, `simplify` or `remesh`";
         return Err(Failure::input("wrong-kind", message));
     };
+    if shell.parts().pairs.is_some() {
+        let message =
+            "this shell is one of a surface that may cross itself (--immersed), which transfer does not support";
+        return Err(Failure::input("wrong-kind", message));
+    }
     let (shell, claim) = joined(session, options, shell, claim)?;
     let from = read(session, options, &options.from)?;
     require_same(&options.from, &source_of(&from)?, shell.source())?;

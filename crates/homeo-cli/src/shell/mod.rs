@@ -4,7 +4,7 @@ mod frozen;
 mod layers;
 mod refuse;
 
-pub use refuse::unfit;
+pub use refuse::{Crossings, unfit};
 
 use std::cell::Cell;
 use std::path::Path;
@@ -35,6 +35,7 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
         thickness: options.thickness,
         prisms: options.prisms,
         rounds: options.rounds,
+        immersed: options.immersed,
         embedded: options.embedded,
         may_thin: true,
         largest_angle: options.largest_angle.to_radians(),
@@ -47,7 +48,11 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
         session.display().note(note);
     }
     session.stage("check");
-    let complex = unfit(session, &mesh, options.triangulate)?;
+    let crossings = match options.immersed {
+        true => Crossings::Allowed,
+        false => Crossings::Refused { advice: "or give --immersed: the shell is then one of the abstract surface" },
+    };
+    let complex = unfit(session, &mesh, options.triangulate, crossings)?;
     session.check()?;
     let made = construct(session, &source_mesh(&mesh.file, complex), &params)?;
     let provenance = provenance(options, &params);
@@ -66,7 +71,7 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
     session.end_stage();
     let shown = |path: &std::path::PathBuf| path.display().to_string();
     let fields = json!({
-        "target": "shell",
+        "target": claim.target,
         "certificate": proof::claim_json(&claim),
         "quality": quality(&made),
         "output": options.output.as_ref().map(shown),
@@ -167,7 +172,7 @@ fn provenance(options: &ShellArgs, params: &ShellParams) -> Provenance {
         source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
-            "thickness": params.thickness, "prisms": params.prisms, "rounds": params.rounds,
+            "thickness": params.thickness, "prisms": params.prisms, "rounds": params.rounds, "immersed": params.immersed,
             "largest_angle": options.largest_angle, "features": options.features, "frozen": options.frozen.is_some(),
             "weld": options.weld, "triangulate": options.triangulate, "orient": options.orient,
         }),
@@ -214,5 +219,6 @@ fn words(session: &Session, options: &ShellArgs, made: &Made, claim: &Claim, wri
         lines.add("written", "no map: give -o FILE.homeo to keep it");
     }
     let name = options.input.display();
-    lines.below(&format!("{name} onto the middle surface of its shell: one-to-one and onto, proved"))
+    let meant = if options.immersed { ", both as abstract surfaces" } else { "" };
+    lines.below(&format!("{name} onto the middle surface of its shell{meant}: one-to-one and onto, proved"))
 }

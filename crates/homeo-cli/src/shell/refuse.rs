@@ -11,17 +11,39 @@ use crate::session::Session;
 /// A surface that touches itself in a vertex has no shell either.
 const GRAVE: [&str; 1] = ["coincident-vertices"];
 
-/// Refuses a mesh that is no surface, or crosses or touches itself; gives its triangles.
+/// What becomes of a surface that crosses itself.
+#[derive(Clone, Copy)]
+pub enum Crossings {
+    /// It is taken as an abstract surface.
+    Allowed,
+    /// It is refused.
+    Refused {
+        /// What to do, where nothing else is wrong.
+        advice: &'static str,
+    },
+}
+
+/// Refuses a mesh that is no surface, or crosses or touches itself, which may be allowed; gives its triangles.
 ///
 /// # Errors
 /// All that is wrong with it.
-pub fn unfit<'m>(session: &Session, mesh: &'m MeshInput, triangulate: bool) -> Result<&'m TriangleComplex> {
+pub fn unfit<'m>(
+    session: &Session,
+    mesh: &'m MeshInput,
+    triangulate: bool,
+    crossings: Crossings,
+) -> Result<&'m TriangleComplex> {
     unless_simplices(mesh, triangulate)?;
     let Cells::Triangles(complex) = &mesh.cells else {
         let message = "this is a volume of tetrahedra, a shell needs a surface: give its boundary as triangles";
         return Err(Failure::input("wrong-dimension", message));
     };
-    let options = Options { intersections: Intersections::Find };
+    let options = Options {
+        intersections: match crossings {
+            Crossings::Allowed => Intersections::WhereNeeded,
+            Crossings::Refused { .. } => Intersections::Find,
+        },
+    };
     let report = analyse_triangles(&mesh.file.positions, complex, options);
     let need = Need {
         name: "surface",
@@ -30,6 +52,12 @@ pub fn unfit<'m>(session: &Session, mesh: &'m MeshInput, triangulate: bool) -> R
         harmless: &[],
         grave: &GRAVE,
     };
-    unless_fit(session, &report.violations, None, &need)?;
+    let advised = |failure: Failure| match crossings {
+        Crossings::Refused { advice } if failure.code == "self-intersection" => {
+            Failure { message: format!("{}\n  {advice}", failure.message), ..failure }
+        }
+        _ => failure,
+    };
+    unless_fit(session, &report.violations, None, &need).map_err(advised)?;
     Ok(complex)
 }

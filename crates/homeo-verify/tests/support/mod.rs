@@ -3,6 +3,8 @@
 
 pub mod build;
 pub mod clip;
+pub mod immersed;
+pub mod mutants;
 pub mod oracle;
 pub mod random;
 pub mod shells;
@@ -30,6 +32,8 @@ pub struct Map {
     pub prisms: Vec<Vec<u32>>,
     /// Another section of a shell: points and triangles.
     pub section: Option<Rows>,
+    /// The pairs of a triangle and a prism, for a source that may cross itself.
+    pub pairs: Option<Vec<[u32; 2]>>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +65,7 @@ impl Map {
             levels: Default::default(),
             prisms: vec![],
             section: None,
+            pairs: None,
         }
     }
 
@@ -70,7 +75,11 @@ impl Map {
 
     /// Vertices per cell.
     pub fn size(&self) -> usize {
-        if ["square", "disk", "shell", "section"].contains(&self.text("target").as_str()) { 3 } else { 4 }
+        if ["square", "disk", "shell", "section", "immersed-shell"].contains(&self.text("target").as_str()) {
+            3
+        } else {
+            4
+        }
     }
 
     /// Cells of the refined complex.

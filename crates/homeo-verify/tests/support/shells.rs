@@ -291,11 +291,12 @@ fn around_points(points: &[[f64; 3]], factor: f64) -> Vec<[f64; 3]> {
 
 type Corner = (u32, usize);
 
-struct Exact {
-    cells: Vec<Vec<u32>>,
-    triangles: Vec<[Rational; 3]>,
+pub struct Exact {
+    pub cells: Vec<Vec<u32>>,
+    pub triangles: Vec<[Rational; 3]>,
     levels: Vec<Vec<Rational>>,
-    prisms: Vec<Vec<u32>>,
+    pub prisms: Vec<Vec<u32>>,
+    pub pairs: Option<BTreeSet<[usize; 2]>>,
 }
 
 /// Whether a shell is valid, and has the counts and the hash that its manifest states.
@@ -318,22 +319,15 @@ fn is_valid_for_source(map: &Map) -> bool {
     if !is_counted || all_points().flatten().any(|x| !x.is_finite()) {
         return false;
     }
-    let points = |rows: &[Vec<f64>]| -> Vec<Rational> { rows.iter().map(|p| rational([p[0], p[1], p[2]])).collect() };
     if !is_surface(&map.source_cells, map.positions.len()) || !is_surface(&map.prisms, map.levels[0].len()) {
         return false;
     }
-    let positions = points(&map.positions);
-    let corners = |cell: &Vec<u32>| [0, 1, 2].map(|i| positions[cell[i] as usize].clone());
-    let shell = Exact {
-        cells: map.source_cells.clone(),
-        triangles: map.source_cells.iter().map(corners).collect(),
-        levels: map.levels.iter().map(|level| points(level)).collect(),
-        prisms: map.prisms.clone(),
-    };
+    let shell = Exact::new(map);
     let has_area = |t: &[Rational; 3]| span_an_area(t);
     shell.has_common_boundary()
         && shell.triangles.iter().all(has_area)
         && shell.is_positive()
+        && map.pairs.as_ref().is_none_or(|pairs| shell.has_complete_pairs(pairs))
         && shell.keeps_off_bottom_and_top()
         && shell.keeps_inside_of_walls()
         && shell.is_crossed_from_below()
@@ -341,7 +335,7 @@ fn is_valid_for_source(map: &Map) -> bool {
         && shell.is_met_once()
 }
 
-fn directed_edges(cells: &[Vec<u32>]) -> Vec<[u32; 2]> {
+pub fn directed_edges(cells: &[Vec<u32>]) -> Vec<[u32; 2]> {
     cells.iter().flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]).collect()
 }
 
@@ -378,7 +372,33 @@ pub fn boundary(cells: &[Vec<u32>]) -> Vec<[u32; 2]> {
 }
 
 impl Exact {
-    fn at(&self, (column, level): Corner) -> &Rational {
+    /// The numbers of a map, all of which are finite, exactly.
+    pub fn new(map: &Map) -> Self {
+        let points =
+            |rows: &[Vec<f64>]| -> Vec<Rational> { rows.iter().map(|p| rational([p[0], p[1], p[2]])).collect() };
+        let positions = points(&map.positions);
+        let corners = |cell: &Vec<u32>| [0, 1, 2].map(|i| positions[cell[i] as usize].clone());
+        let set = |pairs: &Vec<[u32; 2]>| pairs.iter().map(|pair| pair.map(|n| n as usize)).collect();
+        Exact {
+            cells: map.source_cells.clone(),
+            triangles: map.source_cells.iter().map(corners).collect(),
+            levels: map.levels.iter().map(|level| points(level)).collect(),
+            prisms: map.prisms.clone(),
+            pairs: map.pairs.as_ref().map(set),
+        }
+    }
+
+    fn are_paired(&self, c: usize, q: usize) -> bool {
+        self.pairs.as_ref().is_none_or(|pairs| pairs.contains(&[c, q]))
+    }
+
+    /// The triangles that belong to a prism.
+    fn of_prism(&self, q: usize) -> impl Iterator<Item = (&Vec<u32>, &[Rational; 3])> {
+        let all = self.cells.iter().zip(&self.triangles).enumerate();
+        all.filter(move |(c, _)| self.are_paired(*c, q)).map(|(_, triangle)| triangle)
+    }
+
+    pub fn at(&self, (column, level): Corner) -> &Rational {
         &self.levels[level][column as usize]
     }
 
@@ -386,12 +406,12 @@ impl Exact {
         self.at((v, 0)) == self.at((v, 1)) && self.at((v, 1)) == self.at((v, 2))
     }
 
-    fn slabs(&self) -> impl Iterator<Item = (&Vec<u32>, usize)> {
-        self.prisms.iter().flat_map(|cell| [(cell, 0), (cell, 1)])
+    fn slabs(&self) -> impl Iterator<Item = (usize, &Vec<u32>, usize)> {
+        self.prisms.iter().enumerate().flat_map(|(q, cell)| [(q, cell, 0), (q, cell, 1)])
     }
 
     /// By the page: `det(u_i - l_i, x - l_i, y - l_i)` for all choices.
-    fn tetrahedra(&self, cell: &[u32], low: usize) -> Vec<[Rational; 4]> {
+    pub fn tetrahedra(&self, cell: &[u32], low: usize) -> Vec<[Rational; 4]> {
         let mut found = vec![];
         for i in (0..3).filter(|&i| !self.is_pinched(cell[i])) {
             for (x, y) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
@@ -404,7 +424,7 @@ impl Exact {
     }
 
     fn is_positive(&self) -> bool {
-        self.slabs().all(|(cell, low)| {
+        self.slabs().all(|(_, cell, low)| {
             cell.iter().filter(|&&v| self.is_pinched(v)).count() <= 1
                 && self
                     .tetrahedra(cell, low)
@@ -414,10 +434,10 @@ impl Exact {
     }
 
     fn keeps_off_bottom_and_top(&self) -> bool {
-        self.prisms.iter().all(|cell| {
+        self.prisms.iter().enumerate().all(|(q, cell)| {
             [0, 2].iter().all(|&level| {
                 let end = [0, 1, 2].map(|i| self.at((cell[i], level)).clone());
-                self.triangles.iter().all(|triangle| {
+                self.of_prism(q).all(|(_, triangle)| {
                     let allowed = |p: &Rational| {
                         let is_pinched = cell.iter().any(|&v| self.is_pinched(v) && self.at((v, level)) == p);
                         is_pinched && triangle.contains(p)
@@ -429,7 +449,7 @@ impl Exact {
     }
 
     /// The point of a vertex of the source that lies in a triangle.
-    fn position(&self, v: u32) -> &Rational {
+    pub fn position(&self, v: u32) -> &Rational {
         let place = |cell: &Vec<u32>| cell.iter().position(|&w| w == v);
         self.cells.iter().zip(&self.triangles).find_map(|(cell, t)| Some(&t[place(cell)?])).expect("in a triangle")
     }
@@ -452,8 +472,9 @@ impl Exact {
     /// L3 at walls, all triangles with all.
     fn keeps_inside_of_walls(&self) -> bool {
         boundary(&self.prisms).iter().all(|&[i, j]| {
-            let prism = self.prisms.iter().find(|cell| directed_edges(&[cell.to_vec()]).contains(&[i, j]));
-            let third = *prism.expect("a prism at the edge").iter().find(|v| ![i, j].contains(v)).expect("a column");
+            let prism = self.prisms.iter().position(|cell| directed_edges(&[cell.to_vec()]).contains(&[i, j]));
+            let prism = prism.expect("a prism at the edge");
+            let third = *self.prisms[prism].iter().find(|v| ![i, j].contains(v)).expect("a column");
             let middles = [i, j].map(|v| self.at((v, 1)));
             let ends = boundary(&self.cells).into_iter().find(|e| e.map(|v| self.position(v)) == middles);
             let [v, w] = ends.expect("as both surfaces have these edges");
@@ -465,7 +486,7 @@ impl Exact {
                 let is_proper = wall[0] != wall[1] && wall[1] != wall[2] && wall[2] != wall[0];
                 let is_inside = |x: &Rational| side(x) * side(self.at((third, low))) > RBig::ZERO;
                 !is_proper
-                    || self.cells.iter().zip(&self.triangles).all(|(cell, triangle)| {
+                    || self.of_prism(prism).all(|(cell, triangle)| {
                         let held = |n: usize, v: u32| cell.contains(&v) && wall.contains(middles[n]);
                         let common = || match are_apart(triangle, &wall) {
                             true => vec![],
@@ -488,8 +509,8 @@ impl Exact {
     }
 
     fn is_crossed_from_below(&self) -> bool {
-        self.slabs().all(|(cell, low)| {
-            self.triangles.iter().all(|triangle| {
+        self.slabs().all(|(q, cell, low)| {
+            self.of_prism(q).all(|(_, triangle)| {
                 let normal = normal(triangle);
                 let is_positive =
                     |&&v: &&u32| dot(&normal, &minus(self.at((v, low + 1)), self.at((v, low)))) > RBig::ZERO;
@@ -519,10 +540,11 @@ impl Exact {
         all.into_iter().filter(|(pillar, _)| !self.is_pinched(*pillar)).map(|(_, t)| t).collect()
     }
 
-    /// Preimages of a point, by their weights on columns and levels.
-    fn preimages(&self, x: &Rational) -> BTreeSet<BTreeMap<Corner, RBig>> {
+    /// Preimages of a point of a triangle, by their weights on columns and levels.
+    fn preimages(&self, c: usize, x: &Rational) -> BTreeSet<BTreeMap<Corner, RBig>> {
         let mut found = BTreeSet::new();
-        for corners in self.slabs().flat_map(|(cell, low)| self.decomposition(cell, low)) {
+        let slabs = self.slabs().filter(|(q, ..)| self.are_paired(c, *q));
+        for corners in slabs.flat_map(|(_, cell, low)| self.decomposition(cell, low)) {
             let points = corners.map(|corner| self.at(corner).clone());
             if are_apart(std::slice::from_ref(x), &points) {
                 continue;
@@ -550,16 +572,16 @@ impl Exact {
 
     /// L5, by a point of each triangle: by the theorem's proof their numbers agree in a component.
     fn covers_once(&self) -> bool {
-        self.triangles.iter().all(|triangle| {
+        self.triangles.iter().enumerate().all(|(number, triangle)| {
             let [a, b, c] = [0.40625, 0.328125, 0.265625].map(|w| RBig::try_from(w).expect("a number"));
             let x = [0, 1, 2].map(|i| &a * &triangle[0][i] + &b * &triangle[1][i] + &c * &triangle[2][i]);
-            self.preimages(&x).len() == 1
+            self.preimages(number, &x).len() == 1
         })
     }
 
     /// L6, over each prism, by points at the heights where a fibre bends.
     fn is_met_once(&self) -> bool {
-        self.prisms.iter().all(|cell| {
+        self.prisms.iter().enumerate().all(|(q, cell)| {
             let mut order = [cell[0], cell[1], cell[2]];
             order.sort_unstable();
             let weights = [0.390625, 0.34375, 0.265625].map(|w| RBig::try_from(w).expect("a number"));
@@ -579,7 +601,8 @@ impl Exact {
             let mut met = BTreeSet::new();
             for (low, k) in (0..6).map(|k| (k / 3, k % 3)) {
                 let segment = [point(low, &heights[k]), point(low, &heights[k + 1])];
-                let near = |(_, triangle): &(usize, &[Rational; 3])| !are_apart(&segment, *triangle);
+                let near =
+                    |(c, triangle): &(usize, &[Rational; 3])| self.are_paired(*c, q) && !are_apart(&segment, *triangle);
                 for (c, triangle) in self.triangles.iter().enumerate().filter(near) {
                     met.extend(within_triangle(&segment, triangle).into_iter().map(|p| (c, p)));
                 }
@@ -590,7 +613,7 @@ impl Exact {
 }
 
 /// Whether the smallest boxes around points do not meet.
-fn are_apart(a: &[Rational], b: &[Rational]) -> bool {
+pub fn are_apart(a: &[Rational], b: &[Rational]) -> bool {
     let is_below = |a: &[Rational], b: &[Rational], x: usize| a.iter().all(|p| b.iter().all(|q| p[x] < q[x]));
     (0..3).any(|x| is_below(a, b, x) || is_below(b, a, x))
 }

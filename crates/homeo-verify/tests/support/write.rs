@@ -106,6 +106,9 @@ pub fn entries(map: &Map) -> Vec<(String, Vec<u8>)> {
             add("section_positions", "<f8", positions.len(), 3, little_endian!(positions));
             add("section_cells", "<u4", cells.len(), 3, little_endian!(cells));
         }
+        if let Some(pairs) = &map.pairs {
+            add("shell_pairs", "<u4", pairs.len(), 2, little_endian!(pairs));
+        }
         return entries;
     }
     if map.text("kind") == "piecewise-linear" {

@@ -64,14 +64,16 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
         }
         "shell" => {
             is_of_dimension(&text("target"), 2)?;
-            let shell = file.shell()?;
+            let shell = file.shell(text("target") == "immersed-shell")?;
             match text("target").as_str() {
-                "shell" => Ok(StoredMap::Shell(shell)),
+                "shell" | "immersed-shell" => Ok(StoredMap::Shell(shell)),
                 "section" => {
                     let section = file.mesh::<3>(["section_positions", "section_cells"])?;
                     Ok(StoredMap::Shell(shell.with_section(section)))
                 }
-                _ => Err(MapFileError::Manifest("a shell has the target `shell` or `section`".to_owned())),
+                _ => Err(MapFileError::Manifest(
+                    "a shell has the target `shell`, `section` or `immersed-shell`".to_owned(),
+                )),
             }
         }
         other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
@@ -161,7 +163,8 @@ impl<'b> File<'b> {
         }
     }
 
-    fn shell(&mut self) -> Result<Shell, MapFileError> {
+    fn shell(&mut self, is_immersed: bool) -> Result<Shell, MapFileError> {
+        let pairs = if is_immersed { Some(self.pairs()?) } else { None };
         let source = self.source::<3>()?;
         let [bottom, middle, top] = ["shell_bottom", "shell_middle", "shell_top"].map(|name| self.points(name));
         let (bottom, middle, top) = (bottom?, middle?, top?);
@@ -170,7 +173,13 @@ impl<'b> File<'b> {
         }
         let prisms = self.cells::<3>("prisms", middle.len())?;
         let prisms = prisms.cells().iter().map(|corners| corners.map(VertexId::raw)).collect();
-        Ok(Shell::from_parts(source, ShellParts { bottom, middle, top, prisms }))
+        Ok(Shell::from_parts(source, ShellParts { bottom, middle, top, prisms, pairs }))
+    }
+
+    /// Which triangles of a surface that may cross itself belong to which prisms.
+    fn pairs(&mut self) -> Result<Vec<[u32; 2]>, MapFileError> {
+        let pairs = self.rows::<u32, 2>("shell_pairs")?;
+        if pairs.is_sorted() { Ok(pairs) } else { inconsistent("the rows of shell_pairs are not in ascending order") }
     }
 
     fn foliation<const K: usize>(&mut self, target: Target, manifest: &Value) -> Result<Foliation<K>, MapFileError> {

@@ -24,10 +24,16 @@ pub fn write_map(map: &FoliationMap, provenance: &Provenance, out: &mut (impl Wr
 /// Writes a shell with what its certificate needs. The same shell gives the same bytes.
 ///
 /// # Errors
-/// When `out` cannot be written.
+/// When `out` cannot be written, and for a shell of a surface that may cross itself together with another section: the
+/// format knows the one or the other.
 pub fn write_shell(shell: &Shell, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
     let (source, parts) = (shell.source(), shell.parts());
-    let target = if shell.section().is_some() { "section" } else { "shell" };
+    let target = match (shell.section(), &parts.pairs) {
+        (None, None) => "shell",
+        (Some(_), None) => "section",
+        (None, Some(_)) => "immersed-shell",
+        (Some(_), Some(_)) => return Err(io::Error::other("an immersed shell cannot be kept with another section")),
+    };
     let claim = Claim { kind: "shell", target, centre: None, length_unit: 1.0 };
     let mut archive = Archive::begin(source, &claim, provenance, out)?;
     for (name, points) in [("bottom", &parts.bottom), ("middle", &parts.middle), ("top", &parts.top)] {
@@ -35,6 +41,9 @@ pub fn write_shell(shell: &Shell, provenance: &Provenance, out: &mut (impl Write
         archive.array(&format!("shell_{name}"), &[points.len(), 3], flat)?;
     }
     archive.array("prisms", &[parts.prisms.len(), 3], parts.prisms.as_flattened().iter().copied())?;
+    if let Some(pairs) = &parts.pairs {
+        archive.array("shell_pairs", &[pairs.len(), 2], pairs.as_flattened().iter().copied())?;
+    }
     if let Some(section) = shell.section() {
         archive.mesh(["section_positions", "section_cells"], section)?;
     }

@@ -49,7 +49,7 @@ pub(super) fn overlay(shell: &Shell) -> Overlay {
     let corners = |t: usize| cells[t].map(|v| shell.source().positions()[v.index()]);
     let pieces: Vec<Vec<Part>> = (0..cells.len().div_ceil(PIECE))
         .into_par_iter()
-        .map(|k| (k * PIECE..cells.len().min((k + 1) * PIECE)).flat_map(|t| parts_of(shell, corners(t))).collect())
+        .map(|k| (k * PIECE..cells.len().min((k + 1) * PIECE)).flat_map(|t| parts_of(shell, t, corners(t))).collect())
         .collect();
     let mut numbers: HashMap<(u32, [u64; 3]), u32> = HashMap::new();
     let (mut positions, mut images, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
@@ -75,9 +75,10 @@ pub(super) fn overlay(shell: &Shell) -> Overlay {
     Overlay { mesh: CellMesh { positions, images, cells: CellList::Triangles(triangles) }, prisms, distortion }
 }
 
-fn parts_of(shell: &Shell, triangle: [Point; 3]) -> Vec<Part> {
+fn parts_of(shell: &Shell, number: usize, triangle: [Point; 3]) -> Vec<Part> {
     let mut parts = Vec::new();
-    for slab in shell.slabs_near(&Aabb::of(&triangle)) {
+    let belongs = |slab: &usize| shell.parts().are_paired(number as u32, (slab / 2) as u32);
+    for slab in shell.slabs_near(&Aabb::of(&triangle)).into_iter().filter(belongs) {
         for (columns, cell) in shell.slab_cells(slab) {
             let Some((cut, weights)) = cut(&triangle, &cell) else { continue };
             let prism = (slab / 2) as u32;

@@ -111,6 +111,7 @@ pub(super) fn pieces_in(shell: &Shell, surface: &ShellSurface, role: Role, prism
             surface
                 .near(&corners.map(|p| p.map(Interval::from_f64)))
                 .into_iter()
+                .filter(|&t| role != Role::Source || shell.parts().are_paired(t, prism))
                 .filter_map(|t| body.piece_of(surface, t)),
         );
     }

@@ -1,7 +1,5 @@
 //! The fixed prisms of a shell, and whether a triangle may be part of a section.
 
-use std::sync::OnceLock;
-
 use homeo_core::predicate::is_degenerate_triangle;
 use homeo_core::spatial::{Aabb, Tree};
 
@@ -16,8 +14,6 @@ struct Body {
     prism: Prism,
     caps: [Aabb; 2],
     slabs: [Aabb; 2],
-    /// Planes at the sides of each slab, found when first asked for: few prisms need them.
-    outer_walls: OnceLock<[Vec<[Point; 3]>; 2]>,
 }
 
 /// The prisms of a shell, which stay as they are while the surface in them changes.
@@ -44,7 +40,7 @@ impl Stage {
             let slab = |low: usize| Aabb::of(columns.map(|c| [c[low], c[low + 1]]).as_flattened());
             let prism = Prism::new(columns);
             let caps = [0, 1].map(|number| Aabb::of(&prism.cap(number)));
-            Body { prism, caps, slabs: [slab(0), slab(1)], outer_walls: OnceLock::new() }
+            Body { prism, caps, slabs: [slab(0), slab(1)] }
         };
         let bodies: Vec<Body> = parts.prisms.iter().map(body).collect();
         let hulls: Vec<Aabb> = bodies.iter().map(|body| body.prism.hull()).collect();
@@ -53,7 +49,7 @@ impl Stage {
         for (body, &corners) in bodies.iter().zip(&parts.prisms) {
             for (k, [a, b]) in sides(corners).into_iter().enumerate() {
                 if !directed.contains(&[b, a]) {
-                    walls.extend(body.prism.boundary_walls(k).into_iter().map(|(_, wall)| wall));
+                    walls.extend(body.prism.walls_over(k).into_iter().map(|(_, wall)| wall));
                 }
             }
         }
@@ -110,7 +106,7 @@ impl Body {
         if self.prism.is_crossed(slab, triangle) {
             return true;
         }
-        let walls = self.outer_walls.get_or_init(|| [0, 1].map(|slab| self.prism.outer_walls(slab)));
+        let walls = self.prism.outer_walls();
         walls[slab].iter().any(|wall| is_outside(*wall, triangle)) || !self.prism.shares_area(slab, triangle)
     }
 }

@@ -9,6 +9,7 @@ use super::ShellParams;
 use super::directions::{dot, minus, triangles_around, unit_normal};
 use super::kept::Kept;
 use super::prism::{Column, Failure, FailureIn, Prism, is_inside_wall, is_outside, is_pinched, sides};
+use super::sheets::Sheets;
 use super::skin::{Face, Skin};
 use crate::input::SourceMesh;
 use crate::map::ShellParts;
@@ -18,10 +19,13 @@ type Point = [f64; 3];
 /// With fewer pairs of triangles and prisms than this, one thread is faster than several.
 const WORTH_SHARING: usize = 400;
 
+/// Triangles that belong to a prism; `None` where all do that come near it.
+pub(super) type Among<'t> = Option<&'t [u32]>;
+
 /// The source surface, as the checks need it.
 pub(super) struct Surface {
     triangles: Vec<[u32; 3]>,
-    corners: Vec<[Point; 3]>,
+    pub corners: Vec<[Point; 3]>,
     /// Unit normals, rounded.
     normals: Vec<Point>,
     /// No operation makes an angle between a pillar and a normal whose cosine is less, but where there was such an angle.
@@ -44,33 +48,38 @@ impl Surface {
         }
     }
 
+    /// Whether something holds for all triangles near some points; for those among the given ones, if there are any.
+    fn all_near(&self, points: &[Point], among: Among<'_>, holds: impl Fn([Point; 3]) -> bool) -> bool {
+        let region = Aabb::of(points);
+        let mut do_hold = true;
+        let mut visit = |t: usize| do_hold = do_hold && holds(self.corners[t]);
+        match among {
+            None => self.tree.query_box(&region, visit),
+            Some(some) => {
+                let near = some.iter().map(|&t| t as usize).filter(|&t| region.meets(&Aabb::of(&self.corners[t])));
+                near.for_each(&mut visit);
+            }
+        }
+        do_hold
+    }
+
     /// L3: whether the surface stays off the caps of a prism.
-    fn check_caps(&self, prism: &Prism) -> Result<(), FailureIn> {
-        let holds = |slab: usize| {
-            let mut is_clear = true;
-            let region = Aabb::of(&prism.cap(slab));
-            self.tree.query_box(&region, |t| is_clear = is_clear && prism.is_off_cap(slab, self.corners[t]));
-            is_clear
-        };
+    fn check_caps(&self, prism: &Prism, among: Among<'_>) -> Result<(), FailureIn> {
+        let holds = |slab: usize| self.all_near(&prism.cap(slab), among, |triangle| prism.is_off_cap(slab, triangle));
         (0..2).find(|&slab| !holds(slab)).map_or(Ok(()), |slab| Err((Failure::Cap, slab)))
     }
 
     /// L3 for the wall over the side of a prism from its column `k` to the next, in the boundary.
-    fn check_wall(&self, prism: &Prism, k: usize) -> Result<(), FailureIn> {
-        let holds = |wall: [Point; 3]| {
-            let mut is_inside = true;
-            let region = Aabb::of(&wall);
-            self.tree.query_box(&region, |t| is_inside = is_inside && is_inside_wall(wall, self.corners[t]));
-            is_inside
-        };
-        let failed = prism.boundary_walls(k).into_iter().find(|&(_, wall)| !holds(wall));
+    fn check_wall(&self, prism: &Prism, k: usize, among: Among<'_>) -> Result<(), FailureIn> {
+        let holds = |wall: [Point; 3]| self.all_near(&wall, among, |triangle| is_inside_wall(wall, triangle));
+        let failed = prism.walls_over(k).into_iter().find(|&(_, wall)| !holds(wall));
         failed.map_or(Ok(()), |(slab, _)| Err((Failure::Wall, slab)))
     }
 
     /// The triangles among `near` that may have an area in common with a prism; L4 for those that have.
-    fn contents(&self, prism: &Prism, near: &[u32]) -> Result<Contents, FailureIn> {
+    pub fn contents(&self, prism: &Prism, near: &[u32]) -> Result<Contents, FailureIn> {
         let hull = prism.hull();
-        let walls = [0, 1].map(|slab| prism.outer_walls(slab));
+        let walls = prism.outer_walls();
         let mut contents = Contents::default();
         for &t in near {
             let triangle = self.corners[t as usize];
@@ -124,12 +133,13 @@ impl Surface {
 
 /// What of the surface lies in a prism.
 #[derive(Clone)]
-struct Contents {
-    /// All source triangles with which it has an area in common, and perhaps others near it, ascending.
-    triangles: Vec<u32>,
+pub(super) struct Contents {
+    /// All source triangles with which it has an area in common, and perhaps others near it, ascending; where the surface
+    /// may cross itself, those that belong to it.
+    pub triangles: Vec<u32>,
     /// The least cosine of the angle between one of its pillars and the normal of one of them (above the bound also of one
     /// near it); rounded.
-    cosine: f64,
+    pub cosine: f64,
 }
 
 impl Default for Contents {
@@ -152,13 +162,15 @@ pub(super) struct Layer {
     /// The prisms at each column.
     pub around: Vec<Vec<u32>>,
     /// What each prism holds.
-    contents: Vec<Contents>,
+    pub contents: Vec<Contents>,
     /// Whether operations may make columns shorter.
     pub may_shorten: bool,
     /// Bottoms, tops and walls, if the shell is not to overlap itself.
     skin: Option<Skin>,
     /// What is to stay, apart from the boundary.
     pub kept: Kept,
+    /// Round surfaces that may cross themselves.
+    pub sheets: Option<Sheets>,
 }
 
 impl Layer {
@@ -186,6 +198,7 @@ impl Layer {
             may_shorten: false,
             skin: None,
             kept: Kept::new(base, &params.frozen, params.feature_angle),
+            sheets: None,
             prisms,
         }
     }
@@ -207,6 +220,9 @@ impl Layer {
     /// sheet round the triangles over which the prisms stand, their `parents`. Returns those that fail, in the order given,
     /// with what fails first.
     pub fn fill(&mut self, prisms: &[u32], parents: &[u32]) -> Vec<(u32, FailureIn)> {
+        if self.sheets.is_some() {
+            return self.fill_by_sheets(prisms, parents);
+        }
         let find = |&prism: &u32| {
             let contents = self.find_contents(prism)?;
             let body = self.prism(self.prisms[prism as usize]);
@@ -226,23 +242,29 @@ impl Layer {
 
     /// L2 to L4 for a prism, from scratch.
     pub fn is_valid(&self, prism: u32) -> bool {
-        self.check_volumes(prism).is_ok() && self.find_contents(prism).is_ok()
+        let is_filled = || match self.sheets {
+            None => self.find_contents(prism).is_ok(),
+            Some(_) => self.check_belonging(prism).is_ok() && self.is_complete(prism),
+        };
+        self.check_volumes(prism).is_ok() && is_filled()
     }
 
     /// The contents of a prism among all source triangles, if they satisfy L3 and L4.
     fn find_contents(&self, prism: u32) -> Result<Contents, FailureIn> {
         let corners = self.prisms[prism as usize];
         let body = self.prism(corners);
-        self.surface.check_caps(&body)?;
-        for (k, side) in sides(corners).into_iter().enumerate() {
-            if self.boundary.contains(&side) {
-                self.surface.check_wall(&body, k)?;
-            }
-        }
+        self.check_l3(&body, corners, None)?;
         let mut near = Vec::new();
         self.surface.tree.query_box(&body.hull(), |t| near.push(t as u32));
         near.sort_unstable();
         self.surface.contents(&body, &near)
+    }
+
+    /// L3 for a prism, caps and walls.
+    pub fn check_l3(&self, body: &Prism, corners: [u32; 3], among: Among<'_>) -> Result<(), FailureIn> {
+        self.surface.check_caps(body, among)?;
+        let walls = sides(corners).into_iter().enumerate().filter(|(_, side)| self.boundary.contains(side));
+        walls.map(|(k, _)| k).try_for_each(|k| self.surface.check_wall(body, k, among))
     }
 
     /// Replaces prisms by others over the same part of the surface if the new ones satisfy L2 to L4; `columns` may have
@@ -256,14 +278,20 @@ impl Layer {
             old.iter().flat_map(|&p| self.contents[p as usize].triangles.iter().copied()).collect();
         held.sort_unstable();
         held.dedup();
-        let find = |body: &Prism| self.surface.contents(body, &held);
+        let find = |body: &Prism| match self.sheets {
+            None => self.surface.contents(body, &held),
+            Some(_) => self.belonging(body, &held),
+        };
         let contents: Vec<Contents> = if held.len() * bodies.len() < WORTH_SHARING {
             bodies.iter().map(find).collect::<Result<_, _>>()?
         } else {
             bodies.par_iter().map(find).collect::<Result<_, _>>()?
         };
         self.check_angles(old, &contents)?;
-        bodies.iter().try_for_each(|body| self.surface.check_caps(body))?;
+        match self.sheets {
+            None => bodies.iter().try_for_each(|body| self.surface.check_caps(body, None))?,
+            Some(_) => self.check_replaced(old, &bodies, new, &contents)?,
+        }
         self.replace_skin(old, new)?;
         for &prism in old {
             for column in self.prisms[prism as usize] {
@@ -369,6 +397,7 @@ impl Layer {
             }
             parts.prisms.push(corners.map(|column| number[column as usize]));
         }
+        parts.pairs = self.sheets.is_some().then(|| self.pairs());
         parts
     }
 }

@@ -7,8 +7,8 @@
 //!              columns are fixed; directions by the point of a convex hull nearest to the origin.
 //! Arithmetic:  every accepted operation is decided by exact signs; directions, lengths and energies only guide.
 //! Cost:        about proportional to the triangles, times what a prism comes to hold.
-//! Fails when:  the surface crosses or touches itself, or two singular vertices are neighbours on the boundary
-//!              -> [`ShellError`].
+//! Fails when:  the surface crosses or touches itself (where it may: round one vertex), or two singular vertices are
+//!              neighbours on the boundary -> [`ShellError`].
 //! See:         `docs/theory/shells.md`.
 
 mod base;
@@ -16,6 +16,7 @@ pub(in crate::construct) mod directions;
 mod kept;
 pub(in crate::construct) mod layer;
 pub(in crate::construct) mod prism;
+mod sheets;
 mod simplify;
 mod skin;
 
@@ -26,6 +27,7 @@ use crate::progress::Progress;
 use base::Base;
 use layer::Layer;
 use prism::{Column, Failure, FailureIn};
+use sheets::Sheets;
 
 /// What shell is wanted.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +38,9 @@ pub struct ShellParams {
     pub prisms: usize,
     /// Rounds of simplification at most; with 0 the middle surface is the source itself.
     pub rounds: usize,
+    /// Whether the surface may cross itself in space. The shell is then one of the abstract surface: it says which
+    /// triangles belong to which prisms, and sheets that cross do not see each other.
+    pub immersed: bool,
     /// Whether the shell must not overlap itself anywhere in space: bottoms, tops and walls do not meet.
     pub embedded: bool,
     /// Whether operations may make columns shorter, once they come to change little without. It gives fewer prisms and a
@@ -57,6 +62,7 @@ impl Default for ShellParams {
             thickness: 0.1,
             prisms: 0,
             rounds: 30,
+            immersed: false,
             embedded: false,
             may_thin: true,
             largest_angle: LARGEST_ANGLE.to_radians(),
@@ -123,7 +129,7 @@ const SHORTEST: f64 = 1e-13;
 ///
 /// # Preconditions
 /// The triangles form an oriented surface by their links, with or without boundary, none has area zero, and it does not
-/// cross or touch itself.
+/// cross or touch itself, unless `immersed` is set; no two vertices are at one point.
 ///
 /// # Errors
 /// See [`ShellError`].
@@ -224,6 +230,9 @@ fn thinned(
     progress: &dyn Progress,
 ) -> Result<Thinned, ShellError> {
     let mut thinning = Thinning::new(source, base, first_lengths(&base.mesh, target), params);
+    if params.immersed {
+        thinning.layer.sheets = Some(Sheets::new(source)?);
+    }
     loop {
         if let Some(stuck) = thinning.make_positive(progress)? {
             return Ok(Thinned::Stuck(stuck));

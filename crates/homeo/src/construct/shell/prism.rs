@@ -1,8 +1,11 @@
 //! One prism of a shell against one triangle: the exact checks that the construction of shells (prisms change, the
 //! surface stays) and that of sections (the surface changes, prisms stay) have in common.
 
+use std::sync::OnceLock;
+
 use homeo_core::predicate::{
-    Sign, crossing_sign, orient3d, quick_crossing_sign, share_area, triangles_meet, triangles_meet_beyond_vertex,
+    Sign, crossing_sign, orient3d, quick_crossing_sign, segment_meets_triangle, share_area, triangles_meet,
+    triangles_meet_beyond_vertex,
 };
 use homeo_core::spatial::Aabb;
 
@@ -42,6 +45,8 @@ pub(in crate::construct) enum Failure {
 pub(in crate::construct) struct Prism {
     columns: [Column; 3],
     pinched: [bool; 3],
+    /// What [`outer_walls`](Self::outer_walls) gives for each slab, once it was asked for.
+    outer_walls: OnceLock<[Vec<[Point; 3]>; 2]>,
 }
 
 /// Whether a column has no length.
@@ -51,7 +56,7 @@ pub(in crate::construct) fn is_pinched([bottom, middle, top]: Column) -> bool {
 
 impl Prism {
     pub fn new(columns: [Column; 3]) -> Self {
-        Self { columns, pinched: columns.map(is_pinched) }
+        Self { columns, pinched: columns.map(is_pinched), outer_walls: OnceLock::new() }
     }
 
     /// The box that holds the prism.
@@ -87,9 +92,16 @@ impl Prism {
         }
     }
 
+    /// Whether a triangle meets the walls over the side from column `k` to the next.
+    pub fn meets_wall(&self, k: usize, triangle: [Point; 3]) -> bool {
+        let region = Aabb::of(&triangle);
+        let mut walls = self.walls_over(k).into_iter();
+        walls.any(|(_, wall)| Aabb::of(&wall).meets(&region) && triangles_meet(wall, triangle))
+    }
+
     /// The wall triangles of L3 over the side from column `k` to the next, counter-clockwise from outside, with their
     /// slabs; those with two equal points are left out.
-    pub fn boundary_walls(&self, k: usize) -> Vec<(usize, [Point; 3])> {
+    pub fn walls_over(&self, k: usize) -> Vec<(usize, [Point; 3])> {
         let walls =
             SLABS.into_iter().enumerate().flat_map(|(number, slab)| self.wall(slab, k).map(|wall| (number, wall)));
         walls.filter(|(_, wall)| wall[0] != wall[1] && wall[1] != wall[2] && wall[2] != wall[0]).collect()
@@ -115,6 +127,34 @@ impl Prism {
     /// Whether a triangle and one of the tetrahedra of a slab have an area in common.
     pub fn shares_area(&self, slab: usize, triangle: [Point; 3]) -> bool {
         self.tetrahedra(SLABS[slab]).any(|cell| share_area(cell, triangle))
+    }
+
+    /// Whether a closed segment meets one of the tetrahedra.
+    pub fn meets_segment(&self, segment: [Point; 2]) -> bool {
+        let region = Aabb::of(&segment);
+        let is_met = |cell: [Point; 4]| {
+            Aabb::of(&cell).meets(&region)
+                && (contains(cell, segment[0])
+                    || faces(cell).into_iter().any(|face| segment_meets_triangle(segment, face)))
+        };
+        self.hull().meets(&region) && SLABS.into_iter().any(|slab| self.tetrahedra(slab).any(is_met))
+    }
+
+    /// Whether a closed triangle meets one of the tetrahedra: then an edge of one meets the other.
+    pub fn meets(&self, triangle: [Point; 3]) -> bool {
+        let [a, b, c] = triangle;
+        let has_edge_in = |[p, q, r, s]: [Point; 4]| {
+            let edges = [[p, q], [p, r], [p, s], [q, r], [q, s], [r, s]];
+            edges.into_iter().any(|edge| segment_meets_triangle(edge, triangle))
+        };
+        [[a, b], [b, c], [c, a]].into_iter().any(|edge| self.meets_segment(edge))
+            || SLABS.into_iter().any(|slab| self.tetrahedra(slab).any(has_edge_in))
+    }
+
+    /// Whether the hull of some points is off the prism, for each slab beyond one of its outer walls; `false` says nothing.
+    pub fn is_clearly_off(&self, points: &[Point]) -> bool {
+        let is_beyond = |wall: &[Point; 3]| points.iter().all(|&p| side(*wall, p) == Sign::Positive);
+        !self.hull().meets(&Aabb::of(points)) || self.outer_walls().iter().all(|walls| walls.iter().any(is_beyond))
     }
 
     /// Whether all pillars of a slab cross a triangle in the positive sense: with this, L4 holds for the pair.
@@ -158,8 +198,12 @@ impl Prism {
         true
     }
 
-    /// Planes through sides of a slab, and its top and bottom, with all of it on their negative side.
-    pub fn outer_walls(&self, slab: usize) -> Vec<[Point; 3]> {
+    /// For each slab the planes through its sides, top and bottom that have all of it on their negative side.
+    pub fn outer_walls(&self) -> &[Vec<[Point; 3]>; 2] {
+        self.outer_walls.get_or_init(|| [0, 1].map(|slab| self.find_outer_walls(slab)))
+    }
+
+    fn find_outer_walls(&self, slab: usize) -> Vec<[Point; 3]> {
         let slab = SLABS[slab];
         let points: Vec<Point> = self.columns.iter().flat_map(|column| slab.map(|level| column[level])).collect();
         let is_outer = |wall: &[Point; 3]| {
@@ -186,6 +230,16 @@ pub(in crate::construct) fn is_inside_wall(wall: [Point; 3], triangle: [Point; 3
         [[_, l], [_, m]] => side(wall, triangle[3 - l - m]) == Sign::Negative,
         _ => false,
     }
+}
+
+/// Whether a point lies in a closed tetrahedron, which is positive.
+fn contains([a, b, c, d]: [Point; 4], p: Point) -> bool {
+    let parts = [[p, b, c, d], [a, p, c, d], [a, b, p, d], [a, b, c, p]];
+    parts.iter().all(|&[a, b, c, d]| orient3d(a, b, c, d) != Sign::Negative)
+}
+
+fn faces([a, b, c, d]: [Point; 4]) -> [[Point; 3]; 4] {
+    [[b, c, d], [a, c, d], [a, b, d], [a, b, c]]
 }
 
 /// Whether a triangle lies on the closed positive side of a plane, and not all in it.

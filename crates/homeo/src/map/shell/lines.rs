@@ -41,8 +41,17 @@ pub(super) type Fibre<T> = Vec<[T; 3]>;
 impl Shell {
     /// The prism, weights and height of a point that lies in the box.
     pub(super) fn locate<T: Scalar>(&self, point: &[T; 3], region: &Aabb) -> Result<ShellPoint<T>, Stop> {
+        self.locate_among(self.slabs_near(region), point)
+    }
+
+    /// The same among some slabs.
+    pub(super) fn locate_among<T: Scalar>(
+        &self,
+        slabs: impl IntoIterator<Item = usize>,
+        point: &[T; 3],
+    ) -> Result<ShellPoint<T>, Stop> {
         let mut found: Option<ShellPoint<T>> = None;
-        for slab in self.slabs_near(region) {
+        for slab in slabs {
             let Some(here) = self.locate_in_slab(slab, point)? else { continue };
             match &found {
                 None => found = Some(here),
@@ -146,9 +155,23 @@ impl Shell {
         Ok(line)
     }
 
-    /// The point of a section on a pillar line.
-    pub(super) fn meet<T: Scalar>(&self, surface: &ShellSurface, line: &Fibre<T>) -> Result<SurfacePoint<T>, Stop> {
-        let candidates = surface.near(line);
+    /// The triangles of a section that a pillar line of a prism may meet, ascending.
+    fn candidates<T: Scalar>(&self, surface: &ShellSurface, prism: u32, line: &Fibre<T>) -> Vec<u32> {
+        let mut candidates = surface.near(line);
+        // Pairs are about the source; another section is asked for as a whole.
+        let is_source = std::ptr::eq(surface, &self.source);
+        candidates.retain(|&triangle| !is_source || self.parts.are_paired(triangle, prism));
+        candidates
+    }
+
+    /// The point of a section on a pillar line of a prism.
+    pub(super) fn meet<T: Scalar>(
+        &self,
+        surface: &ShellSurface,
+        prism: u32,
+        line: &Fibre<T>,
+    ) -> Result<SurfacePoint<T>, Stop> {
+        let candidates = self.candidates(surface, prism, line);
         if let [pinched] = line.as_slice() {
             return surface
                 .at_vertex(&candidates, pinched.each_ref().map(T::near), pinched)
@@ -176,10 +199,10 @@ impl Shell {
 
     /// An enclosure of the point of a section on a pillar line, also where it is open which of several triangles has it: the
     /// certificate says that the line meets the section once. `None` where nothing good is known.
-    pub(super) fn enclose(surface: &ShellSurface, line: &Fibre<Interval>) -> Option<[Interval; 3]> {
+    pub(super) fn enclose(&self, surface: &ShellSurface, prism: u32, line: &Fibre<Interval>) -> Option<[Interval; 3]> {
         let boxes: Vec<Aabb> = line.windows(2).map(hull).collect();
         let mut met: Option<[Interval; 3]> = None;
-        for triangle in surface.near(line) {
+        for triangle in self.candidates(surface, prism, line) {
             let place = Aabb::of(&surface.corners(triangle));
             let corners = surface.corners(triangle).map(point_of);
             for (ends, _) in line.windows(2).zip(&boxes).filter(|(_, region)| region.meets(&place)) {

@@ -27,6 +27,9 @@ pub struct ShellParts {
     pub top: Vec<Point>,
     /// Columns of each prism, counter-clockwise seen from the top, `#Q by 3`.
     pub prisms: Vec<[u32; 3]>,
+    /// Round a surface that may cross itself: the triangles of the source and the prisms that belong together, `#K by 2`,
+    /// ascending. `None` where all do.
+    pub pairs: Option<Vec<[u32; 2]>>,
 }
 
 impl ShellParts {
@@ -34,6 +37,11 @@ impl ShellParts {
     pub(crate) fn is_pinched(&self, column: u32) -> bool {
         let column = column as usize;
         self.bottom[column] == self.middle[column] && self.middle[column] == self.top[column]
+    }
+
+    /// Whether a triangle of the source belongs to a prism; where the surface does not cross itself all do.
+    pub(crate) fn are_paired(&self, triangle: u32, prism: u32) -> bool {
+        self.pairs.as_ref().is_none_or(|pairs| pairs.binary_search(&[triangle, prism]).is_ok())
     }
 }
 
@@ -123,7 +131,8 @@ impl Shell {
         }
     }
 
-    /// The same shell, with another section as the image of the source.
+    /// The same shell, with another section as the image of the source. For a shell of a surface that may cross itself
+    /// the format knows no such map, and there is no theorem about it here.
     #[must_use]
     pub fn with_section(self, section: SourceMesh<3>) -> Self {
         Self { section: Some(ShellSurface::new(section)), ..self }
@@ -198,6 +207,29 @@ impl Shell {
         let [a, b, height] = exactly([a, b, at.height]);
         let rest = &(&Rational::ONE - &a) - &b;
         self.unproject_exact(&ShellPoint { prism: at.prism, weights: [a, b, rest], height }).map(|p| rounded(&p))
+    }
+
+    /// Where a point of the source, known by a triangle and barycentric weights, lies in the shell, exactly. Unlike
+    /// [`project_exact`](Self::project_exact) this has one answer also where the surface crosses itself.
+    ///
+    /// # Errors
+    /// When there is no such triangle, a weight is negative, they do not add up to 1, or the shell's certificate does not
+    /// hold.
+    pub fn lift_exact(
+        &self,
+        triangle: u32,
+        weights: &[Rational; 3],
+    ) -> Result<ShellPoint<Rational>, ShellEvaluationError> {
+        let are_weights =
+            weights.iter().all(|w| *w >= Rational::ZERO) && weights.iter().cloned().sum::<Rational>() == Rational::ONE;
+        if !are_weights || triangle as usize >= self.source.mesh.complex().cell_count() {
+            return Err(ShellEvaluationError::NoSuchPoint);
+        }
+        let corners = self.source.corners(triangle);
+        let point = space::combination(weights, &corners.map(space::point_of));
+        let slabs = self.slabs_near(&Aabb::of(&corners)).into_iter();
+        let belongs = |slab: &usize| self.parts.are_paired(triangle, (slab / 2) as u32);
+        self.locate_among(slabs.filter(belongs), &point).map_err(certain)
     }
 
     /// The point of the middle surface over or under which a rational point lies, exactly.
@@ -297,7 +329,7 @@ impl Shell {
         point: Point,
     ) -> Result<SurfacePoint<Interval>, ShellEvaluationError> {
         let at = self.project(point)?;
-        let met = self.fibre(&at).map_err(Stop::from).and_then(|line| self.meet(surface, &line));
+        let met = self.fibre(&at).map_err(Stop::from).and_then(|line| self.meet(surface, at.prism, &line));
         // In a thin triangle the point may be certain and its weights not.
         let are_sharp = |met: &SurfacePoint<Interval>| enclosure(&met.weights).radius <= ACCURACY;
         let is_sharp = |met: &SurfacePoint<Interval>| enclosure(&met.point).radius <= self.accuracy && are_sharp(met);
@@ -314,8 +346,9 @@ impl Shell {
 
     /// The point where the pillar line of a point meets a surface.
     fn enclose_on(&self, surface: &ShellSurface, point: Point) -> Result<Enclosed, ShellEvaluationError> {
-        let line = self.fibre(&self.project(point)?).ok().filter(|line| line.len() > 1);
-        let near = line.and_then(|line| Self::enclose(surface, &line)).map(|image| enclosure(&image));
+        let at = self.project(point)?;
+        let line = self.fibre(&at).ok().filter(|line| line.len() > 1);
+        let near = line.and_then(|line| self.enclose(surface, at.prism, &line)).map(|image| enclosure(&image));
         match near.filter(|near| near.radius <= self.accuracy) {
             Some(near) => Ok(near),
             None => self.meet_closely(surface, point).map(|met| enclosure(&met.point)),
@@ -329,7 +362,7 @@ impl Shell {
     ) -> Result<SurfacePoint<Rational>, ShellEvaluationError> {
         self.check_point(at)?;
         let line = self.fibre(at).map_err(|undecided| certain(undecided.into()))?;
-        self.meet(surface, &line).map_err(certain)
+        self.meet(surface, at.prism, &line).map_err(certain)
     }
 
     /// Whether there is such a prism, the weights are possible, and the height is in range.
