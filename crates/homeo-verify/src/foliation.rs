@@ -186,7 +186,7 @@ impl Foliation<'_> {
             Target::Cube => (disk, annulus),
             Target::Disk => (circle, nothing),
             Target::Ball => (sphere, nothing),
-            Target::Shell | Target::Section | Target::ImmersedShell => (nothing, nothing), // not for foliations
+            _ => (nothing, nothing), // shells are no foliations
         };
         let expected = [("source region", end), ("sink region", end), ("parallel part", wall)];
         for (slots, (name, (components, euler, boundaries))) in regions.iter().zip(expected) {

@@ -124,10 +124,12 @@ pub fn compare_source(
 fn check_map(map: &MapFile) -> Checked<Claim> {
     let checked = check_rules(map)?;
     let is_immersed = map.manifest.target == Target::ImmersedShell;
+    let is_embedded = map.manifest.target == Target::EmbeddedShell;
     let (kind, theorem) = match map.manifest.kind {
         Kind::Foliation => ("foliation", "theorem on locally bipolar foliations, rules 1-8"),
         Kind::PiecewiseLinear => ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P"),
         Kind::Shell if is_immersed => ("shell", "theorem on immersed shells, rules L1-L6 and I1-I4"),
+        Kind::Shell if is_embedded => ("shell", "theorem on shells, rules L1-L6, E1 and E2"),
         Kind::Shell => ("shell", "theorem on shells, rules L1-L6"),
     };
     let (target, onto) = match map.manifest.target {
@@ -138,6 +140,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::Shell => ("shell", "middle surface"),
         Target::Section => ("section", "other section"),
         Target::ImmersedShell => ("immersed-shell", "middle surface"),
+        Target::EmbeddedShell => ("embedded-shell", "middle surface"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
     let mut statement = format!(
@@ -156,6 +159,10 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
             }
         );
         overlaps = "Away from the sections the shell may overlap itself in space; whether it does was not decided.";
+        if is_embedded {
+            statement.push_str(" The shell does not overlap itself: no point of space is in it twice.");
+            overlaps = "Nothing is said of the size of the shell.";
+        }
         if is_immersed {
             statement.push_str(
                 " Both are meant as abstract surfaces, glued from their triangles: in space they may cross themselves.",

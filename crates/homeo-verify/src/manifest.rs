@@ -21,9 +21,17 @@ pub(crate) enum Target {
     /// The middle surface of a shell round a surface that may cross itself.
     #[serde(rename = "immersed-shell")]
     ImmersedShell,
+    /// The middle surface of a shell that does not overlap itself in space.
+    #[serde(rename = "embedded-shell")]
+    EmbeddedShell,
 }
 
 impl Target {
+    /// Whether maps of kind `shell` reach it, and no others.
+    pub(crate) fn is_in_shell(self) -> bool {
+        matches!(self, Target::Shell | Target::Section | Target::ImmersedShell | Target::EmbeddedShell)
+    }
+
     /// Vertices of a cell: three or four.
     pub(crate) fn cell_size(self) -> usize {
         if matches!(self, Target::Cube | Target::Ball) { 4 } else { 3 }
@@ -101,8 +109,7 @@ impl Manifest {
         let is_possible = !is_radial || manifest.kind == Kind::Foliation;
         readable(is_possible, "only a foliation can reach the disk or the ball")?;
         let is_shell = manifest.kind == Kind::Shell;
-        let is_in_shell = matches!(manifest.target, Target::Shell | Target::Section | Target::ImmersedShell);
-        readable(is_shell == is_in_shell, "kind shell and targets shell, section and immersed-shell belong together")?;
+        readable(is_shell == manifest.target.is_in_shell(), "kind shell and the targets of shells belong together")?;
         Ok(manifest)
     }
 }

@@ -50,6 +50,8 @@ pub(crate) struct ShellData {
     pub(crate) section: Option<(Vec<Point>, Vec<u32>)>,
     /// A triangle and a prism each that belong together, if the source may cross itself.
     pub(crate) pairs: Option<Vec<[u32; 2]>>,
+    /// Whether it claims not to overlap itself.
+    pub(crate) is_embedded: bool,
 }
 
 impl MapFile {
@@ -172,6 +174,12 @@ impl ShellData {
             _ => None,
         };
         let pairs = pairs.map(|flat| flat.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect());
-        Ok(ShellData { levels: [bottom, middle, top], prisms, section, pairs })
+        Ok(ShellData {
+            levels: [bottom, middle, top],
+            prisms,
+            section,
+            pairs,
+            is_embedded: target == Target::EmbeddedShell,
+        })
     }
 }

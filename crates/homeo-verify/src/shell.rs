@@ -12,9 +12,11 @@
 //! boundary vertices are at one point, also by the point where it starts.
 //!
 //! Round a surface that may cross itself, the file lists which triangle belongs to which prism. The rules then speak of
-//! these *pairs* only, and the rules I1 to I4 say what makes the list complete.
+//! these *pairs* only, and the rules I1 to I4 say what makes the list complete. The rules E1 and E2 are for shells that claim
+//! not to overlap themselves.
 
 mod pairs;
+mod skin;
 
 use crate::complex::{Complex, UnionFind};
 use crate::links::check_manifold;
@@ -98,6 +100,9 @@ fn check_section(positions: &[Point], cells: &[u32], data: &ShellData) -> Checke
         ("components of the source with a point that the shell covers once (rule L5)", shell.check_preimages()?),
         ("components of the middle with a fibre that meets the source once (rule L6)", shell.check_fibres()?),
     ];
+    if data.is_embedded {
+        checked.push(("triangles of the shell's surface, covered once (rules E1, E2)", shell.check_skin()?));
+    }
     checked.extend(pairs.map(|count| ("pairs of a triangle and a prism, none missing (rules I1-I4)", count)));
     Ok(checked)
 }

@@ -29,7 +29,7 @@ pub struct Claim {
     pub statement: String,
     /// `foliation`, `piecewise-linear` or `shell`.
     pub kind: String,
-    /// `square`, `disk`, `cube`, `ball`, `shell`, `section` or `immersed-shell`.
+    /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell` or `embedded-shell`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]

@@ -172,7 +172,7 @@ fn provenance(options: &ShellArgs, params: &ShellParams) -> Provenance {
         source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
-            "thickness": params.thickness, "prisms": params.prisms, "rounds": params.rounds, "immersed": params.immersed,
+            "thickness": params.thickness, "prisms": params.prisms, "rounds": params.rounds, "immersed": params.immersed, "embedded": params.embedded,
             "largest_angle": options.largest_angle, "features": options.features, "frozen": options.frozen.is_some(),
             "weld": options.weld, "triangulate": options.triangulate, "orient": options.orient,
         }),

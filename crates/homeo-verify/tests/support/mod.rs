@@ -75,7 +75,9 @@ impl Map {
 
     /// Vertices per cell.
     pub fn size(&self) -> usize {
-        if ["square", "disk", "shell", "section", "immersed-shell"].contains(&self.text("target").as_str()) {
+        if ["square", "disk", "shell", "section", "immersed-shell", "embedded-shell"]
+            .contains(&self.text("target").as_str())
+        {
             3
         } else {
             4

@@ -64,15 +64,15 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
         }
         "shell" => {
             is_of_dimension(&text("target"), 2)?;
-            let shell = file.shell(text("target") == "immersed-shell")?;
+            let shell = file.shell(&text("target"))?;
             match text("target").as_str() {
-                "shell" | "immersed-shell" => Ok(StoredMap::Shell(shell)),
+                "shell" | "immersed-shell" | "embedded-shell" => Ok(StoredMap::Shell(shell)),
                 "section" => {
                     let section = file.mesh::<3>(["section_positions", "section_cells"])?;
                     Ok(StoredMap::Shell(shell.with_section(section)))
                 }
                 _ => Err(MapFileError::Manifest(
-                    "a shell has the target `shell`, `section` or `immersed-shell`".to_owned(),
+                    "a shell has the target `shell`, `section`, `immersed-shell` or `embedded-shell`".to_owned(),
                 )),
             }
         }
@@ -163,8 +163,9 @@ impl<'b> File<'b> {
         }
     }
 
-    fn shell(&mut self, is_immersed: bool) -> Result<Shell, MapFileError> {
-        let pairs = if is_immersed { Some(self.pairs()?) } else { None };
+    fn shell(&mut self, target: &str) -> Result<Shell, MapFileError> {
+        let pairs = if target == "immersed-shell" { Some(self.pairs()?) } else { None };
+        let is_embedded = target == "embedded-shell";
         let source = self.source::<3>()?;
         let [bottom, middle, top] = ["shell_bottom", "shell_middle", "shell_top"].map(|name| self.points(name));
         let (bottom, middle, top) = (bottom?, middle?, top?);
@@ -173,7 +174,7 @@ impl<'b> File<'b> {
         }
         let prisms = self.cells::<3>("prisms", middle.len())?;
         let prisms = prisms.cells().iter().map(|corners| corners.map(VertexId::raw)).collect();
-        Ok(Shell::from_parts(source, ShellParts { bottom, middle, top, prisms, pairs }))
+        Ok(Shell::from_parts(source, ShellParts { bottom, middle, top, prisms, pairs, is_embedded }))
     }
 
     /// Which triangles of a surface that may cross itself belong to which prisms.

@@ -29,6 +29,7 @@ pub fn write_map(map: &FoliationMap, provenance: &Provenance, out: &mut (impl Wr
 pub fn write_shell(shell: &Shell, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
     let (source, parts) = (shell.source(), shell.parts());
     let target = match (shell.section(), &parts.pairs) {
+        (None, None) if parts.is_embedded => "embedded-shell",
         (None, None) => "shell",
         (Some(_), None) => "section",
         (None, Some(_)) => "immersed-shell",

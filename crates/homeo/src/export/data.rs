@@ -214,7 +214,7 @@ impl ReportData {
 
 impl ShellPicture {
     fn check(&self, cells: usize, vertices: usize) -> Result<(), String> {
-        let ShellParts { bottom, middle, top, prisms, pairs: _ } = &self.parts;
+        let ShellParts { bottom, middle, top, prisms, .. } = &self.parts;
         if bottom.len() != middle.len() || top.len() != middle.len() {
             return Err("the layers differ in the number of their points".into());
         }

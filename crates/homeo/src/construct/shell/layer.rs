@@ -397,6 +397,7 @@ impl Layer {
             }
             parts.prisms.push(corners.map(|column| number[column as usize]));
         }
+        parts.is_embedded = self.skin.is_some();
         parts.pairs = self.sheets.is_some().then(|| self.pairs());
         parts
     }

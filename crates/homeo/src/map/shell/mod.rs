@@ -30,6 +30,8 @@ pub struct ShellParts {
     /// Round a surface that may cross itself: the triangles of the source and the prisms that belong together, `#K by 2`,
     /// ascending. `None` where all do.
     pub pairs: Option<Vec<[u32; 2]>>,
+    /// Whether it claims that it does not overlap itself anywhere in space. A section kept with it does not.
+    pub is_embedded: bool,
 }
 
 impl ShellParts {
