@@ -121,7 +121,11 @@ fn write_distortion(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "<figure>{}<figcaption>", histogram_svg(&statistics))?;
     let (cells, cell) = match data.target {
         TargetShape::Middle => ("parts of source triangles, on each of which the projection is linear", "part"),
-        TargetShape::Section => ("parts of source triangles, on each of which the map is linear", "part"),
+        TargetShape::Section => (
+            "parts of source triangles, on each of which the map is linear (those with less than a millionth of the area of \
+             their triangle are left out)",
+            "part",
+        ),
         _ => ("cells, interpolated linearly", "cell"),
     };
     write!(

@@ -323,8 +323,17 @@ fn the_page_of_a_section_shows_it_beside_the_source() {
     let drawn = [&middle, &data].map(|data| triangles(&data.cells.cells));
     assert!(near(area(&data.cells.positions, &drawn[1]), area(&middle.cells.positions, &drawn[0])));
     assert!(near(area(&data.cells.images, &drawn[1]), area(&parts.middle, parts.prisms.as_flattened())));
-    let largest = |data: &ReportData| data.distortion.iter().copied().fold(0.0, f64::max);
-    assert!((largest(&data) / largest(&middle) - 1.0).abs() < 1e-3, "{} {}", largest(&data), largest(&middle));
+    // Tiny parts are left out, and among them are the most distorted ones: by area it makes no difference.
+    let mean = |data: &ReportData, triangles: &[u32]| {
+        let parts = triangles.chunks(3).zip(&data.distortion).filter(|(_, distortion)| distortion.is_finite());
+        let sums = parts.fold([0.0, 0.0], |[sum, whole], (t, distortion)| {
+            let part = area(&data.cells.positions, t);
+            [sum + part * distortion.ln(), whole + part]
+        });
+        sums[0] / sums[1]
+    };
+    let means = [mean(&middle, &drawn[0]), mean(&data, &drawn[1])];
+    assert!(means[0] > 0.05 && (means[1] / means[0] - 1.0).abs() < 1e-2, "{means:?}");
     let mut page = Vec::new();
     write_report(&data, &mut page).expect("a vector takes all");
     let page = String::from_utf8(page).expect("the page is UTF-8");
