@@ -284,6 +284,23 @@ fn layers_are_meshes_and_limits_are_kept() {
 }
 
 #[test]
+fn an_embedded_shell_says_so_and_is_used_like_others() {
+    let folder = Folder::new();
+    folder.write("t.obj", torus(24, 10)).write("p.csv", vertices(&torus(24, 10)));
+    let made = folder.line("shell t.obj --embedded -o t.homeo --layers t --json -q").expect(0).json();
+    assert_eq!(made["certificate"]["target"], "embedded-shell");
+    let said = folder.line("verify t.homeo --source t.obj").expect(0).stdout;
+    assert!(said.contains("no point of space is in it twice") && said.contains("E1 and E2"), "{said}");
+    for layer in ["t_bottom.obj", "t_top.obj"] {
+        let info = folder.line(&format!("info {layer} --intersections --json -q")).expect(0).json();
+        assert_eq!(info["self_intersections"], 0);
+    }
+    folder.line("eval t.homeo --points p.csv --exact -o m.csv").expect(0);
+    folder.line("report t.homeo -o t.html -q").expect(0);
+    folder.line("transfer t.homeo --from t.obj --onto t.obj -o same.ply -q").expect(0);
+}
+
+#[test]
 fn what_is_to_stay_stays() {
     let folder = Folder::new();
     folder.write("t.obj", torus(24, 10)).write("keep.json", "[0, 17, 200]").write("no.json", "[0, 17000]");
