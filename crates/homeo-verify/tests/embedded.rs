@@ -5,11 +5,11 @@ mod support;
 
 use homeo_verify::{Verdict, verify_bytes};
 use serde_json::json;
-use support::Map;
 use support::clip::{Rational, cross, dot, minus};
 use support::mutants::{is_small, mutate};
 use support::random::Random;
 use support::shells::{Exact, Mesh, all_shells, is_valid, joined, octahedron, scaled, shell};
+use support::{Map, assert_refuted};
 
 fn claiming(mut map: Map) -> Map {
     map.manifest["target"] = json!("embedded-shell");
@@ -70,14 +70,6 @@ fn is_certified(map: &Map) -> bool {
     matches!(verify_bytes(&map.bytes()), Ok(Verdict::Certified(_)))
 }
 
-#[track_caller]
-fn assert_refuted(map: &Map, rule: &str) {
-    match verify_bytes(&map.bytes()) {
-        Ok(Verdict::Refuted(witness)) => assert_eq!(witness.rule, rule, "{witness:?}"),
-        other => panic!("not refuted: {other:?}"),
-    }
-}
-
 #[test]
 fn shells_are_certified_only_if_they_do_not_overlap() {
     let mut counts = [0; 2];
@@ -115,7 +107,7 @@ fn layers_that_cross_are_refuted() {
         assert_eq!(is_embedded(&map), rule.is_none());
         match rule {
             None => assert!(is_certified(&map)),
-            Some(rule) => assert_refuted(&map, rule),
+            Some(rule) => _ = assert_refuted(&map, rule, "meet"),
         }
     }
 }
@@ -126,7 +118,7 @@ fn layers_that_lie_in_one_another_are_refuted() {
     let map = two(0.5, [0.0; 3], [[0.6, 1.4], [0.45, 0.8]]);
     assert!(is_certified(&map), "as a shell that may overlap itself");
     assert!(!is_embedded(&map));
-    assert_refuted(&claiming(map), "E2");
+    assert_refuted(&claiming(map), "E2", "preimages");
 }
 
 const MUTANTS: usize = 250;

@@ -4,28 +4,16 @@
 
 mod support;
 
-use homeo_verify::{Verdict, Witness, verify_bytes};
+use homeo_verify::{Verdict, verify_bytes};
 use serde_json::json;
 use support::immersed::{TUBE_TRIANGLES, around_tube_twice, immersed, immersed_shells, tube_round, uneven};
 use support::mutants::{is_small, judge, mutate};
 use support::random::Random;
 use support::shells::{Exact, around, is_valid, joined, octahedron, over_plane, shell};
-use support::{Map, write};
+use support::{Map, assert_refuted, write};
 
 fn named(name: &str) -> Map {
     immersed_shells().into_iter().find(|(other, _)| *other == name).expect("a name from the list").1
-}
-
-#[track_caller]
-fn assert_refuted(map: &Map, rule: &str, words: &str) -> Witness {
-    match verify_bytes(&map.signed_bytes()) {
-        Ok(Verdict::Refuted(witness)) => {
-            assert_eq!(witness.rule, rule, "{witness:?}");
-            assert!(witness.message.contains(words), "{witness:?}");
-            witness
-        }
-        other => panic!("not refuted: {other:?}"),
-    }
 }
 
 /// A shell with all pairs listed.

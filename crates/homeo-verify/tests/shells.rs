@@ -2,7 +2,7 @@
 
 mod support;
 
-use homeo_verify::{Verdict, Witness, verify_bytes};
+use homeo_verify::{Verdict, verify_bytes};
 use serde_json::json;
 use support::mutants::{change_cells, change_points, is_small, judge, mutate};
 use support::random::Random;
@@ -10,7 +10,7 @@ use support::shells::{
     all_shells, around, bare_hexagon, boundary, closed_shells, hexagon, icosphere, is_valid, joined, octahedron,
     open_shells, over_plane, shell, starred, tetrahedron, triangle, turned,
 };
-use support::{Map, write};
+use support::{Map, assert_refuted, write};
 
 #[test]
 fn all_valid_shells_are_certified() {
@@ -62,18 +62,6 @@ fn small_shells() -> Vec<(&'static str, Map)> {
 
 fn named(name: &str) -> Map {
     all_shells().into_iter().find(|(other, _)| *other == name).expect("a name from the list").1
-}
-
-#[track_caller]
-fn assert_refuted(map: &Map, rule: &str, words: &str) -> Witness {
-    match verify_bytes(&map.signed_bytes()) {
-        Ok(Verdict::Refuted(witness)) => {
-            assert_eq!(witness.rule, rule, "{witness:?}");
-            assert!(witness.message.contains(words), "{witness:?}");
-            witness
-        }
-        other => panic!("not refuted: {other:?}"),
-    }
 }
 
 #[track_caller]

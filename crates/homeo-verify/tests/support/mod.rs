@@ -10,6 +10,7 @@ pub mod random;
 pub mod shells;
 pub mod write;
 
+use homeo_verify::{Verdict, Witness, verify_bytes};
 use serde_json::{Value, json};
 
 /// Points and triangles.
@@ -114,5 +115,18 @@ impl Map {
         let mut map = self.clone();
         map.sign();
         map.bytes()
+    }
+}
+
+/// The witness against a map, which has to be of a rule and to say certain words.
+#[track_caller]
+pub fn assert_refuted(map: &Map, rule: &str, words: &str) -> Witness {
+    match verify_bytes(&map.signed_bytes()) {
+        Ok(Verdict::Refuted(witness)) => {
+            assert_eq!(witness.rule, rule, "{witness:?}");
+            assert!(witness.message.contains(words), "{witness:?}");
+            witness
+        }
+        other => panic!("not refuted: {other:?}"),
     }
 }
