@@ -2,7 +2,7 @@
 
 mod support;
 
-use homeo::construct::shell::{ShellParams, build};
+use homeo::construct::shell::{ShellError, ShellParams, build};
 use homeo::input::SourceMesh;
 use homeo::map::Shell;
 use homeo::progress::Silent;
@@ -61,4 +61,10 @@ fn open_and_singular_surfaces_have_embedded_shells() {
         assert_eq!(meeting_pairs(&shell), 0);
         assert!(shell.parts().prisms.len() < source.complex().cell_count(), "it was simplified");
     }
+}
+
+#[test]
+fn no_shell_is_both_embedded_and_immersed() {
+    let params = ShellParams { embedded: true, immersed: true, ..ShellParams::default() };
+    assert_eq!(build(&half_torus(), &params, &Silent).err(), Some(ShellError::Contradiction));
 }

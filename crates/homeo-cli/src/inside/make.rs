@@ -81,7 +81,8 @@ pub fn remesh(session: &Session, options: &RemeshArgs, outputs: &mut Outputs) ->
         let mean = texture::mean_edge(&section.surface);
         let mut lines = Lines::default();
         lines.add("triangles", format!("{} instead of {}", info.triangles, info.first_triangles));
-        lines.add("edges", format!("{mean:.4} long on average, {edge_length:.4} wanted"));
+        let bound = if options.adaptive.is_some() { "at most" } else { "on average" };
+        lines.add("edges", format!("{mean:.4} long on average, {edge_length:.4} wanted {bound}"));
         let refused = info.refusals;
         let quality = json!({
             "triangles": info.triangles, "first_triangles": info.first_triangles, "edge_length": edge_length,

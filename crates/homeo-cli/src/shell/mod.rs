@@ -159,7 +159,7 @@ pub fn construct_in_time(session: &Session, source: &SourceMesh<3>, params: &She
 fn explain(session: &Session, error: &ShellError) -> Failure {
     let message = error.to_string();
     match error {
-        ShellError::Thickness | ShellError::Angle => Failure::usage(message),
+        ShellError::Thickness | ShellError::Angle | ShellError::Contradiction => Failure::usage(message),
         ShellError::NoSuchVertex(vertex) => Failure::input("frozen", message).with("elements", json!([vertex])),
         ShellError::Stuck { triangle, .. } => Failure::limits("stuck", message).with("elements", json!([triangle])),
         ShellError::Cancelled => session.stopped(),

@@ -104,6 +104,9 @@ pub enum ShellError {
     /// An angle is not between 0 and a right one (`largest_angle`) or a straight one (`feature_angle`).
     #[error("the largest angle has to be between 0 and 90 degrees, that of features between 0 and 180")]
     Angle,
+    /// `immersed` and `embedded` are both set: a shell in which sheets cross overlaps itself.
+    #[error("a shell of a surface that may cross itself cannot be kept from overlapping itself")]
+    Contradiction,
     /// A vertex to be kept does not exist.
     #[error("there is no vertex {0} to be kept")]
     NoSuchVertex(u32),
@@ -133,15 +136,25 @@ const SHORTEST: f64 = 1e-13;
 ///
 /// # Errors
 /// See [`ShellError`].
+///
+/// # Example
+/// ```
+/// use homeo::{construct::shell::{ShellParams, build}, input::SourceMesh, progress::Silent};
+/// use homeo_core::mesh::SimplicialComplex;
+///
+/// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let complex = SimplicialComplex::from_indices(4, &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+/// let params = ShellParams { thickness: 0.05, embedded: true, ..ShellParams::default() };
+/// let (shell, info) = build(&SourceMesh::new(corners, complex), &params, &Silent)?;
+/// assert!(info.prisms == 4 && shell.parts().is_embedded);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn build(
     source: &SourceMesh<3>,
     params: &ShellParams,
     progress: &dyn Progress,
 ) -> Result<(Shell, ShellInfo), ShellError> {
-    if !(params.thickness > 0.0 && params.thickness.is_finite()) {
-        return Err(ShellError::Thickness);
-    }
-    check_kept(source, params)?;
+    check_params(source, params)?;
     let target = params.thickness * longest_side(source.positions());
     progress.stage("directions");
     let mut base = Base::new(source);
@@ -155,7 +168,7 @@ pub fn build(
         ..ShellInfo::default()
     };
     progress.stage("simplify");
-    simplify(&mut layer, params, target, progress, &mut info)?;
+    simplify(&mut layer, params, target, progress, &mut info);
     info.prisms = layer.count();
     info.largest_angle = layer.largest_angle();
     // What the operations kept up piece by piece, from scratch.
@@ -163,7 +176,13 @@ pub fn build(
     Ok((Shell::from_parts(source.clone(), layer.into_parts()), info))
 }
 
-fn check_kept(source: &SourceMesh<3>, params: &ShellParams) -> Result<(), ShellError> {
+fn check_params(source: &SourceMesh<3>, params: &ShellParams) -> Result<(), ShellError> {
+    if !(params.thickness > 0.0 && params.thickness.is_finite()) {
+        return Err(ShellError::Thickness);
+    }
+    if params.immersed && params.embedded {
+        return Err(ShellError::Contradiction);
+    }
     let is_sharp = params.feature_angle.is_none_or(|angle| (0.0..=std::f64::consts::PI).contains(&angle));
     if !is_sharp || !(0.0..=std::f64::consts::FRAC_PI_2).contains(&params.largest_angle) {
         return Err(ShellError::Angle);
@@ -391,17 +410,11 @@ fn first_lengths(source: &SourceMesh<3>, target: f64) -> Vec<f64> {
 }
 
 /// Rounds of flips, collapses and growth until they change little.
-fn simplify(
-    layer: &mut Layer,
-    params: &ShellParams,
-    target: f64,
-    progress: &dyn Progress,
-    info: &mut ShellInfo,
-) -> Result<(), ShellError> {
+fn simplify(layer: &mut Layer, params: &ShellParams, target: f64, progress: &dyn Progress, info: &mut ShellInfo) {
     while info.rounds < params.rounds && layer.count() > params.prisms {
         if progress.is_cancelled() {
             // What there is, is valid.
-            return Ok(());
+            return;
         }
         info.rounds += 1;
         let before = layer.count();
@@ -417,5 +430,4 @@ fn simplify(
             layer.may_shorten = true;
         }
     }
-    Ok(())
 }
