@@ -7,6 +7,7 @@
 //! | [`number`] | rationals that are exact and intervals that enclose |
 //! | [`predicate`] | signs that are decided exactly on `f64` and on rational coordinates |
 //! | [`mesh`] | connectivity apart from coordinates, with typed ids |
+//! | [`planar`] | polygons with holes, exactly simple |
 //! | [`spatial`] | boxes and a tree over them, for overlap and point queries |
 //! | [`io`] | one reader and one writer per file format; nothing is repaired |
 //! | [`topology`] | what a mesh is: manifold, orientable, disk, ball, with every violation |
@@ -22,6 +23,7 @@
 pub mod io;
 pub mod mesh;
 pub mod number;
+pub mod planar;
 pub mod predicate;
 pub mod spatial;
 pub mod topology;

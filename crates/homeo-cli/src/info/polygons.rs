@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use homeo::progress::Progress;
-use homeo_core::number::Rational;
-use homeo_core::predicate::{Sign, orient2d};
+use homeo_core::planar::{Point2 as Point, meeting_edges, turn};
+use homeo_core::predicate::Sign;
 use serde_json::{Value, json};
 
 use super::{violation, violations_text};
@@ -12,8 +12,6 @@ use crate::answer::Answer;
 use crate::failure::{Failure, Result};
 use crate::session::Session;
 use crate::text::{Lines, yes_no};
-
-type Point = [f64; 2];
 
 /// Magnitudes on which signs are exact.
 const EXACT_RANGE: std::ops::RangeInclusive<f64> = 1e-90..=1e90;
@@ -108,6 +106,11 @@ fn collect(value: &Value, name: &str, rings: &mut Vec<(String, Vec<Point>)>) -> 
     if rings.is_empty() { Err(format!("{name} holds no polygon")) } else { Ok(()) }
 }
 
+/// Pairs of edges that meet away from a common end, the first hundred of them.
+fn crossings(points: &[Point]) -> Vec<[u32; 2]> {
+    meeting_edges(&[points.to_vec()], 100).into_iter().map(|[i, j]| [i.edge, j.edge]).collect()
+}
+
 fn ring(value: &Value) -> std::result::Result<Vec<Point>, String> {
     let rows = value.as_array().into_iter().flatten().enumerate();
     let point = |(row, value): (usize, &Value)| {
@@ -117,67 +120,6 @@ fn ring(value: &Value) -> std::result::Result<Vec<Point>, String> {
     };
     rows.map(|row| point(row).ok_or_else(|| format!("vertex {} is no pair [x, y] of numbers of usual size", row.0)))
         .collect()
-}
-
-/// The exact sign of the area.
-fn turn(points: &[Point]) -> Sign {
-    let exact = |x: f64| Rational::from_f64(x).unwrap_or(Rational::ZERO);
-    let n = points.len();
-    let area: Rational = (0..n)
-        .map(|i| {
-            let ([ax, ay], [bx, by]) = (points[i].map(exact), points[(i + 1) % n].map(exact));
-            ax * by - bx * ay
-        })
-        .sum();
-    area.sign()
-}
-
-/// Pairs of edges that meet away from a common end, the first hundred of them.
-fn crossings(points: &[Point]) -> Vec<[u32; 2]> {
-    let n = points.len();
-    let edge = |i: usize| (points[i], points[(i + 1) % n]);
-    let low = |i: usize, axis: usize| edge(i).0[axis].min(edge(i).1[axis]);
-    let high = |i: usize, axis: usize| edge(i).0[axis].max(edge(i).1[axis]);
-    let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by(|&i, &j| low(i, 0).total_cmp(&low(j, 0)).then(i.cmp(&j)));
-    let mut found = Vec::new();
-    for (place, &i) in order.iter().enumerate() {
-        for &j in order[place + 1..].iter().take_while(|&&j| low(j, 0) <= high(i, 0)) {
-            let apart = low(j, 1) > high(i, 1) || high(j, 1) < low(i, 1);
-            if !apart && edges_meet(points, i.min(j), i.max(j)) {
-                found.push([i.min(j) as u32, i.max(j) as u32]);
-                if found.len() == 100 {
-                    return found;
-                }
-            }
-        }
-    }
-    found.sort_unstable();
-    found
-}
-
-/// Whether edges `i < j` meet elsewhere than in a common end.
-fn edges_meet(points: &[Point], i: usize, j: usize) -> bool {
-    let n = points.len();
-    let [a, b, c, d] = [i, (i + 1) % n, j, (j + 1) % n];
-    let is_between = |p: Point, q: Point, r: Point| (0..2).all(|k| p[k].min(q[k]) <= r[k] && r[k] <= p[k].max(q[k]));
-    let on = |p: usize, q: usize, r: usize| {
-        orient2d(points[p], points[q], points[r]) == Sign::Zero && is_between(points[p], points[q], points[r])
-    };
-    if n < 3 || b == c && a == d {
-        return true;
-    }
-    if b == c {
-        // Neighbours: only a fold back on itself counts, or an edge of length zero.
-        return on(a, b, d) || on(c, d, a);
-    }
-    if a == d {
-        return on(a, b, c) || on(c, d, b);
-    }
-    let side = |p: usize, q: usize, r: usize| orient2d(points[p], points[q], points[r]);
-    let (s, t, u, v) = (side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b));
-    let opposite = |x: Sign, y: Sign| x != Sign::Zero && y == x.reversed();
-    opposite(s, t) && opposite(u, v) || on(a, b, c) || on(a, b, d) || on(c, d, a) || on(c, d, b)
 }
 
 fn violations(rings: &[Ring]) -> Vec<Value> {
@@ -214,30 +156,4 @@ fn violations(rings: &[Ring]) -> Vec<Value> {
         }
     }
     all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn simplicity_is_exact() {
-        assert!(crossings(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]).is_empty());
-        assert_eq!(crossings(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), [[0, 2]]);
-        // A vertex on another edge, an edge that folds back, a repeated vertex.
-        assert!(!crossings(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 0.0], [0.0, 4.0]]).is_empty());
-        assert!(!crossings(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 1.0]]).is_empty());
-        assert!(!crossings(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).is_empty());
-        // Nearly touching, but not.
-        let gap = 1.0f64.next_up();
-        assert!(crossings(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, gap - 1.0], [0.0, 4.0]]).is_empty());
-    }
-
-    #[test]
-    fn orientation_is_exact() {
-        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        assert_eq!(turn(&square), Sign::Positive);
-        let reversed: Vec<Point> = square.into_iter().rev().collect();
-        assert_eq!(turn(&reversed), Sign::Negative);
-    }
 }
