@@ -69,6 +69,11 @@ impl Tree {
         self.boxes.is_empty()
     }
 
+    /// The smallest box around all boxes; an empty one if there is none.
+    pub fn hull(&self) -> Aabb {
+        self.nodes.first().map_or(Aabb::EMPTY, |root| root.hull)
+    }
+
     /// Builds the node over `order[start..end]` and all below it; the depth is logarithmic.
     fn build(&mut self, start: usize, end: usize) -> u32 {
         let members = &mut self.order[start..end];

@@ -2,5 +2,6 @@
 
 mod crease;
 pub mod foliation;
+pub mod harmonic;
 pub mod section;
 pub mod shell;

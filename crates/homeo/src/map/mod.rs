@@ -9,6 +9,7 @@ mod exact;
 mod fast;
 mod float;
 mod foliation;
+mod harmonic;
 mod locate;
 mod nearest;
 mod sample;
@@ -18,6 +19,7 @@ mod steps;
 mod target;
 
 pub use foliation::{Centre, DEFAULT_ACCURACY, Foliation, FoliationParts};
+pub use harmonic::{BoundaryPoint, Enclosed2, Half, HalfParts, HarmonicMap, Middle, PlanarEvaluationError, SHARE_BITS};
 pub(crate) use nearest::is_flat;
 pub use sample::{LeafPolyline, distortions};
 pub use section::Section;

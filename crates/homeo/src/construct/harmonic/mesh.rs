@@ -1,0 +1,109 @@
+//! Triangulating a domain: constrained Delaunay, refined inside.
+
+use std::collections::{HashMap, HashSet};
+
+use homeo_core::planar::Point2;
+use spade::{AngleLimit, ConstrainedDelaunayTriangulation, RefinementParameters, Triangulation};
+
+use super::HarmonicError;
+
+/// A triangulation whose first vertices are those of the boundary.
+pub(super) struct Mesh {
+    pub boundary: Vec<Point2>,
+    pub inner: Vec<Point2>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Angles below this many degrees are refined away where the boundary lets them.
+const LEAST_ANGLE: f64 = 25.0;
+
+/// Triangulates what some rings bound; no vertices are added on the boundary.
+pub(super) fn triangulate(
+    rings: &[Vec<Point2>],
+    largest_area: f64,
+    most_vertices: usize,
+) -> Result<Mesh, HarmonicError> {
+    let failed = |what: &str| HarmonicError::Triangulation(what.to_owned());
+    let boundary: Vec<Point2> = rings.iter().flatten().copied().collect();
+    let mut constraints = Vec::with_capacity(boundary.len());
+    let mut first = 0;
+    for ring in rings {
+        constraints.extend((0..ring.len()).map(|i| [first + i, first + (i + 1) % ring.len()]));
+        first += ring.len();
+    }
+    let points = boundary.iter().map(|p| spade::Point2::new(p[0], p[1])).collect();
+    let mut plane =
+        ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::try_bulk_load_cdt(points, constraints, |_| {})
+            .map_err(|e| HarmonicError::Triangulation(e.to_string()))?;
+    if plane.num_vertices() != boundary.len() {
+        return Err(failed("points of the boundary are the same after rounding"));
+    }
+    let parameters = RefinementParameters::new()
+        .exclude_outer_faces(true)
+        .keep_constraint_edges()
+        .with_angle_limit(AngleLimit::from_deg(LEAST_ANGLE))
+        .with_max_allowed_area(largest_area)
+        .with_max_additional_vertices(most_vertices);
+    let refined = plane.refine(parameters);
+    let outside: HashSet<usize> = refined.excluded_faces.iter().map(|face| face.index()).collect();
+    let numbers: HashMap<[u64; 2], u32> =
+        boundary.iter().enumerate().map(|(i, p)| (p.map(f64::to_bits), i as u32)).collect();
+    let mut inner = Vec::new();
+    let mut number = vec![u32::MAX; plane.num_vertices()];
+    for vertex in plane.vertices() {
+        let point = [vertex.position().x, vertex.position().y];
+        number[vertex.index()] = numbers.get(&point.map(f64::to_bits)).copied().unwrap_or_else(|| {
+            inner.push(point);
+            (boundary.len() + inner.len() - 1) as u32
+        });
+    }
+    let triangles = plane
+        .inner_faces()
+        .filter(|face| !outside.contains(&face.index()))
+        .map(|face| face.vertices().map(|v| number[v.index()]))
+        .collect();
+    Ok(Mesh { boundary, inner, triangles })
+}
+
+impl Mesh {
+    /// Splits inner edges whose ends are on one ring (the outer one has the first `outer` vertices): on a cylinder, where a
+    /// ring goes to a straight line, they would leave triangles without area.
+    pub fn split_chords(&mut self, outer: usize) {
+        let count = self.boundary.len();
+        let ring_of = |v: u32| if (v as usize) < outer { 0 } else { 1 };
+        let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
+        for [a, b, c] in &self.triangles {
+            for [i, j] in [[a, b], [b, c], [c, a]] {
+                *sides.entry([*i.min(j), *i.max(j)]).or_default() += 1;
+            }
+        }
+        let mut chords: Vec<[u32; 2]> = sides
+            .into_iter()
+            .filter(|&([i, j], uses)| uses == 2 && (j as usize) < count && ring_of(i) == ring_of(j))
+            .map(|(chord, _)| chord)
+            .collect();
+        chords.sort_unstable();
+        let middles: HashMap<[u32; 2], u32> = chords
+            .into_iter()
+            .map(|[i, j]| {
+                let (p, q) = (self.boundary[i as usize], self.boundary[j as usize]);
+                self.inner.push([0, 1].map(|axis| 0.5 * (p[axis] + q[axis])));
+                ([i, j], (count + self.inner.len() - 1) as u32)
+            })
+            .collect();
+        let mut waiting = std::mem::take(&mut self.triangles);
+        while let Some(corners) = waiting.pop() {
+            let split = (0..3).find_map(|k| {
+                let [i, j] = [corners[k], corners[(k + 1) % 3]];
+                middles.get(&[i.min(j), i.max(j)]).map(|&middle| (k, middle))
+            });
+            let Some((k, middle)) = split else {
+                self.triangles.push(corners);
+                continue;
+            };
+            let [i, j, far] = [0, 1, 2].map(|step| corners[(k + step) % 3]);
+            waiting.extend([[i, middle, far], [middle, j, far]]);
+        }
+        self.triangles.reverse();
+    }
+}

@@ -1,0 +1,196 @@
+//! One half of a composite harmonic map: a triangulated domain, flattened onto the middle.
+
+use homeo_core::number::{Interval, Rational, Scalar};
+use homeo_core::planar::{PlanarDomain, Point2};
+use homeo_core::predicate::Sign;
+use homeo_core::spatial::{Aabb, Tree};
+
+use super::middle::{Middle, between, bounds};
+
+/// A vertex of a triangulation that lies on an edge of the domain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundaryPoint {
+    /// Ring of the edge.
+    pub ring: u32,
+    /// Number of the edge in its ring, which is that of its first vertex.
+    pub edge: u32,
+    /// How far along the edge, in units of `2^-30`: 0 is the edge's first vertex. Below `2^30`.
+    pub share: u32,
+}
+
+/// The numbers that define a half.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HalfParts {
+    /// What is triangulated.
+    pub domain: PlanarDomain,
+    /// Vertices on the boundary, in its order, ring after ring; every vertex of the domain is one. They come first.
+    pub boundary: Vec<BoundaryPoint>,
+    /// The other vertices.
+    pub inner: Vec<Point2>,
+    /// Their images in the middle.
+    pub images: Vec<Point2>,
+    /// Corners, counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+    /// On a cylinder: how many turns the corners of a triangle's image are ahead of the images of the vertices.
+    pub shifts: Vec<[i8; 3]>,
+}
+
+/// A triangulated domain with its flattening, ready to be evaluated.
+#[derive(Clone, Debug)]
+pub struct Half {
+    parts: HalfParts,
+    /// Over the triangles in the domain, and over their images.
+    trees: [Tree; 2],
+}
+
+/// Where a triangulation is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Domain,
+    Image,
+}
+
+impl Half {
+    /// Prepares a half for evaluation.
+    pub fn new(parts: HalfParts, middle: &Middle) -> Self {
+        let tree = |side: Side| {
+            let boxes: Vec<Aabb> = (0..parts.triangles.len())
+                .map(|t| {
+                    let [low, high] = bounds(&corners::<Interval>(&parts, middle, side, t));
+                    Aabb { low: [low[0], low[1], 0.0], high: [high[0], high[1], 0.0] }
+                })
+                .collect();
+            Tree::new(&boxes)
+        };
+        let trees = [tree(Side::Domain), tree(Side::Image)];
+        Self { parts, trees }
+    }
+
+    /// The numbers that define it.
+    pub fn parts(&self) -> &HalfParts {
+        &self.parts
+    }
+
+    /// How many vertices the triangulation has.
+    pub fn vertex_count(&self) -> usize {
+        self.parts.boundary.len() + self.parts.inner.len()
+    }
+
+    /// Where a vertex lies in the domain, rounded.
+    pub fn position(&self, vertex: u32) -> Point2 {
+        position::<Interval>(&self.parts, vertex).map(|x| x.near())
+    }
+
+    /// Where the corners of a triangle go in the middle, rounded.
+    pub fn image(&self, middle: &Middle, triangle: usize) -> [Point2; 3] {
+        corners::<Interval>(&self.parts, middle, Side::Image, triangle).map(|p| p.map(|x| x.near()))
+    }
+
+    /// Whether all triangles and all their images are counter-clockwise, exactly; the first that is not.
+    pub fn first_flipped(&self, middle: &Middle) -> Option<usize> {
+        (0..self.parts.triangles.len()).find(|&t| {
+            [Side::Domain, Side::Image].into_iter().any(|side| {
+                let quick = corners::<Interval>(&self.parts, middle, side, t);
+                let sign = cross(&quick[0], &quick[1], &quick[2]).sign().unwrap_or_else(|| {
+                    let [a, b, c] = corners::<Rational>(&self.parts, middle, side, t);
+                    cross(&a, &b, &c).sign()
+                });
+                sign != Sign::Positive
+            })
+        })
+    }
+
+    /// Its numbers, if all triangles and images are counter-clockwise; the first triangle that is not.
+    pub(crate) fn into_parts_if_positive(self, middle: &Middle) -> Result<HalfParts, usize> {
+        match self.first_flipped(middle) {
+            None => Ok(self.parts),
+            Some(triangle) => Err(triangle),
+        }
+    }
+
+    /// By how many turns a point of a cylinder may have to go on to meet the images of the triangles.
+    pub(super) fn turns_to_try<T: Scalar>(&self, middle: &Middle, turn: &T) -> std::ops::RangeInclusive<i32> {
+        if !middle.is_cylinder() {
+            return 0..=0;
+        }
+        let hull = self.trees[1].hull();
+        let (at, [low, high]) = (turn.enclosure(), [hull.low[0], hull.high[0]]);
+        let [first, last] = [(low - at.high()).ceil(), (high - at.low()).floor()];
+        // Nothing is tried where nothing is known.
+        if first.is_finite() && last.is_finite() { first as i32..=last as i32 } else { 1..=0 }
+    }
+
+    /// Takes a point from one side to the other by the triangle that holds it. `None` where rounding leaves open in which
+    /// triangle it lies; an empty answer where it lies in none.
+    pub(super) fn carry<T: Scalar>(&self, middle: &Middle, from: Side, point: &[T; 2]) -> Option<Option<[T; 2]>> {
+        let tree = &self.trees[usize::from(from == Side::Image)];
+        let [x, y] = point.each_ref().map(Scalar::enclosure);
+        let region = Aabb { low: [x.low(), y.low(), 0.0], high: [x.high(), y.high(), 0.0] };
+        let mut answer = Some(None);
+        tree.query_box(&region, |triangle| {
+            if matches!(answer, Some(None)) {
+                answer = self.carry_by(middle, from, triangle, point);
+            }
+        });
+        answer
+    }
+
+    fn carry_by<T: Scalar>(
+        &self,
+        middle: &Middle,
+        from: Side,
+        triangle: usize,
+        point: &[T; 2],
+    ) -> Option<Option<[T; 2]>> {
+        let to = if from == Side::Domain { Side::Image } else { Side::Domain };
+        let [a, b, c] = corners::<T>(&self.parts, middle, from, triangle);
+        let weights = [cross(point, &b, &c), cross(&a, point, &c), cross(&a, &b, point)];
+        let signs = weights.each_ref().map(Scalar::sign);
+        if signs.contains(&Some(Sign::Negative)) {
+            return Some(None);
+        }
+        if signs.contains(&None) {
+            return None;
+        }
+        let total = weights[0].plus(&weights[1]).plus(&weights[2]);
+        let there = corners::<T>(&self.parts, middle, to, triangle);
+        let coordinate = |axis: usize| {
+            let sum = (0..3).map(|i| weights[i].times(&there[i][axis])).reduce(|x, y| x.plus(&y));
+            sum.unwrap_or_else(|| T::from_f64(0.0)).divide(&total)
+        };
+        Some(Some([coordinate(0), coordinate(1)]))
+    }
+}
+
+/// Twice the area of a triangle.
+fn cross<T: Scalar>(a: &[T; 2], b: &[T; 2], c: &[T; 2]) -> T {
+    let step = |p: &[T; 2], axis: usize| p[axis].minus(&a[axis]);
+    step(b, 0).times(&step(c, 1)).minus(&step(b, 1).times(&step(c, 0)))
+}
+
+fn position<T: Scalar>(parts: &HalfParts, vertex: u32) -> [T; 2] {
+    let Some(point) = parts.boundary.get(vertex as usize) else {
+        return parts.inner[vertex as usize - parts.boundary.len()].map(T::from_f64);
+    };
+    let ring = &parts.domain.rings()[point.ring as usize];
+    let ends = [ring[point.edge as usize], ring[(point.edge as usize + 1) % ring.len()]];
+    between(&ends.map(|end| end.map(T::from_f64)), point.share)
+}
+
+fn corners<T: Scalar>(parts: &HalfParts, middle: &Middle, side: Side, triangle: usize) -> [[T; 2]; 3] {
+    let vertices = parts.triangles[triangle];
+    if side == Side::Domain {
+        return vertices.map(|v| position(parts, v));
+    }
+    std::array::from_fn(|corner| {
+        let vertex = vertices[corner] as usize;
+        let mut image: [T; 2] = match parts.boundary.get(vertex) {
+            Some(point) => between(&middle.edge(point.ring as usize, point.edge as usize), point.share),
+            None => parts.images[vertex - parts.boundary.len()].map(T::from_f64),
+        };
+        if middle.is_cylinder() {
+            image[0] = image[0].plus(&T::from_f64(f64::from(parts.shifts[triangle][corner])));
+        }
+        image
+    })
+}
