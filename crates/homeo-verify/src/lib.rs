@@ -7,7 +7,8 @@
 //! 1. `archive`, `npy`, `manifest`, `map_file`: bytes to arrays, hostile input;
 //! 2. `complex`, `links`, `number`: neighbours, manifolds, exact signs;
 //! 3. `source` (rules S, 8), `subdivision` (R), `foliation` (1-6, 8), `section` (7), `piecewise_linear` (P, 7);
-//! 4. `triangles`, `shell` (L1-L6, of `docs/theory/shells.md`).
+//! 4. `triangles`, `shell` (L1-L6, of `docs/theory/shells.md`);
+//! 5. `rings` (D), `harmonic` (H1-H5, of `docs/theory/polygons.md`).
 //!
 //! # Complexity
 //! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file. For
@@ -16,12 +17,14 @@
 mod archive;
 mod complex;
 mod foliation;
+mod harmonic;
 mod links;
 mod manifest;
 mod map_file;
 mod npy;
 mod number;
 mod piecewise_linear;
+mod rings;
 mod section;
 mod shell;
 mod source;
@@ -120,6 +123,34 @@ pub fn compare_source(
     })
 }
 
+/// Compares the source of a map between planar domains with a polygon, bit for bit.
+///
+/// # Errors
+/// [`Unreadable`] when the bytes break a container rule.
+///
+/// # Example
+/// ```no_run
+/// # let (bytes, rings) = (vec![], vec![vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]]);
+/// use homeo_verify::{SourceMatch, compare_polygon};
+/// assert_eq!(compare_polygon(&bytes, &rings)?, SourceMatch::Same);
+/// # Ok::<(), homeo_verify::Unreadable>(())
+/// ```
+pub fn compare_polygon(bytes: &[u8], rings: &[Vec<[f64; 2]>]) -> Result<SourceMatch, Unreadable> {
+    let map = MapFile::read(bytes)?;
+    let different = |text: String| Ok(SourceMatch::Different(format!("the map's source {text}")));
+    let MapData::Harmonic(data) = &map.data else { return different("is a mesh".to_owned()) };
+    let sizes: Vec<usize> = rings.iter().map(Vec::len).collect();
+    if !sizes.iter().copied().eq(data.ring_sizes.iter().map(|&n| n as usize)) {
+        return different(format!("has rings of {:?} vertices", data.ring_sizes));
+    }
+    let bits = |[x, y, _]: [f64; 3]| [x.to_bits(), y.to_bits()];
+    let same = |(a, b): (&[f64; 2], &[f64; 3])| a.map(f64::to_bits) == bits(*b);
+    match rings.iter().flatten().zip(&data.source_points).position(|pair| !same(pair)) {
+        None => Ok(SourceMatch::Same),
+        Some(v) => different(format!("has vertex {v} at {:?}", &data.source_points[v][..2])),
+    }
+}
+
 /// Applies every rule and puts the claim into words.
 fn check_map(map: &MapFile) -> Checked<Claim> {
     let checked = check_rules(map)?;
@@ -131,6 +162,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::Shell if is_immersed => ("shell", "theorem on immersed shells, rules L1-L6 and I1-I4"),
         Kind::Shell if is_embedded => ("shell", "theorem on shells, rules L1-L6, E1 and E2"),
         Kind::Shell => ("shell", "theorem on shells, rules L1-L6"),
+        Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
     };
     let (target, onto) = match map.manifest.target {
         Target::Square => ("square", "square [0,1]^2"),
@@ -141,6 +173,8 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::Section => ("section", "other section"),
         Target::ImmersedShell => ("immersed-shell", "middle surface"),
         Target::EmbeddedShell => ("embedded-shell", "middle surface"),
+        Target::Polygon => ("polygon", "target polygon"),
+        Target::Annulus => ("annulus", "target polygon with a hole"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
     let mut statement = format!(
@@ -171,6 +205,14 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
                         space where sheets cross has an image for each of them.";
         }
     }
+    if let MapData::Harmonic(data) = &map.data {
+        statement = format!(
+            "The stored map is a homeomorphism from the domain of {vertices} vertices in {} ring(s) onto the {onto}; it is \
+             linear on every edge ({theorem}).",
+            data.ring_sizes.len()
+        );
+        overlaps = "Nothing is said of how much it distorts.";
+    }
     let limits = [
         "The claim is about the complex with these cells and the exact rational map that the file defines.",
         overlaps,
@@ -190,6 +232,9 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
 fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
     if let MapData::Shell(data) = &map.data {
         return shell::check_shell(map, data);
+    }
+    if let MapData::Harmonic(data) = &map.data {
+        return harmonic::check_harmonic(data);
     }
     let source = source::check_source(map)?;
     let refined = match &map.refinement {
@@ -211,7 +256,7 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
             piecewise_linear::check_onto_box(complex, |v| images[v as usize], "P")?;
             checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
         }
-        MapData::Shell(_) => {} // above
+        MapData::Shell(_) | MapData::Harmonic(_) => {} // above
     }
     Ok(checked)
 }

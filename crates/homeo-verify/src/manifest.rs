@@ -24,12 +24,21 @@ pub(crate) enum Target {
     /// The middle surface of a shell that does not overlap itself in space.
     #[serde(rename = "embedded-shell")]
     EmbeddedShell,
+    /// A planar domain without holes.
+    Polygon,
+    /// A planar domain with one hole.
+    Annulus,
 }
 
 impl Target {
     /// Whether maps of kind `shell` reach it, and no others.
     pub(crate) fn is_in_shell(self) -> bool {
         matches!(self, Target::Shell | Target::Section | Target::ImmersedShell | Target::EmbeddedShell)
+    }
+
+    /// Whether maps between planar domains reach it, and no others.
+    pub(crate) fn is_planar(self) -> bool {
+        matches!(self, Target::Polygon | Target::Annulus)
     }
 
     /// Vertices of a cell: three or four.
@@ -45,6 +54,7 @@ pub(crate) enum Kind {
     Foliation,
     PiecewiseLinear,
     Shell,
+    CompositeHarmonic,
 }
 
 /// What the manifest claims.
@@ -110,6 +120,8 @@ impl Manifest {
         readable(is_possible, "only a foliation can reach the disk or the ball")?;
         let is_shell = manifest.kind == Kind::Shell;
         readable(is_shell == manifest.target.is_in_shell(), "kind shell and the targets of shells belong together")?;
+        let is_planar = manifest.kind == Kind::CompositeHarmonic;
+        readable(is_planar == manifest.target.is_planar(), "composite maps and planar targets belong together")?;
         Ok(manifest)
     }
 }

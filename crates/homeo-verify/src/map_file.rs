@@ -30,6 +30,7 @@ pub(crate) enum MapData {
     /// Images of the vertices.
     PiecewiseLinear(Vec<Point>),
     Shell(ShellData),
+    Harmonic(HarmonicData),
 }
 
 /// The arrays of a foliation; the section is empty for the ball.
@@ -54,12 +55,42 @@ pub(crate) struct ShellData {
     pub(crate) is_embedded: bool,
 }
 
+/// The arrays of a composite harmonic map. Third coordinates are 0.
+pub(crate) struct HarmonicData {
+    /// How many vertices the rings of the domains have.
+    pub(crate) ring_sizes: Vec<u32>,
+    pub(crate) source_points: Vec<Point>,
+    pub(crate) target_points: Vec<Point>,
+    /// Where both have their vertices in the middle.
+    pub(crate) middle_points: Vec<Point>,
+    pub(crate) is_cylinder: bool,
+    /// Of the source and of the target.
+    pub(crate) halves: [HalfData; 2],
+}
+
+/// A triangulated domain.
+pub(crate) struct HalfData {
+    /// Ring, edge and share of each vertex on the boundary.
+    pub(crate) boundary: Vec<u32>,
+    pub(crate) inner: Vec<Point>,
+    pub(crate) images: Vec<Point>,
+    pub(crate) triangles: Vec<u32>,
+    /// For the corners of each triangle; empty unless the middle is a cylinder.
+    pub(crate) shifts: Vec<i8>,
+}
+
 impl MapFile {
     /// Decodes a map file and checks its hash. Arrays are taken out of the archive; in the end only notes may be left.
     pub(crate) fn read(bytes: &[u8]) -> Result<Self, Unreadable> {
         let mut archive = Archive::open(bytes)?;
         let text = archive.0.remove("manifest.json").ok_or_else(|| unreadable("there is no manifest.json"))?;
         let manifest = Manifest::parse(text)?;
+        if manifest.kind == Kind::CompositeHarmonic {
+            let (data, positions) = HarmonicData::read(&mut archive, &manifest)?;
+            all_taken(&archive)?;
+            let data = MapData::Harmonic(data);
+            return Ok(MapFile { manifest, positions, cells: vec![], refinement: None, data });
+        }
         let (positions, cells) = read_source(&mut archive, &manifest)?;
         let size = manifest.target.cell_size();
         let refinement = match archive.0.contains_key("cells.npy") && manifest.kind != Kind::Shell {
@@ -75,10 +106,8 @@ impl MapFile {
             let count = refinement.as_ref().map_or(cells.len(), |r| r.cells.len()) / size;
             MapData::Foliation(FoliationData::read(&mut archive, manifest.target, count)?)
         };
-        match archive.0.keys().find(|name| !name.starts_with("note_")) {
-            Some(name) => Err(unreadable(format!("entry {name:?} does not belong into this kind of map"))),
-            None => Ok(MapFile { manifest, positions, cells, refinement, data }),
-        }
+        all_taken(&archive)?;
+        Ok(MapFile { manifest, positions, cells, refinement, data })
     }
 
     /// Vertices of the refined complex.
@@ -113,15 +142,27 @@ impl MapFile {
     }
 }
 
+/// Only notes may be left in the archive.
+fn all_taken(archive: &Archive) -> Result<(), Unreadable> {
+    match archive.0.keys().find(|name| !name.starts_with("note_")) {
+        Some(name) => Err(unreadable(format!("entry {name:?} does not belong into this kind of map"))),
+        None => Ok(()),
+    }
+}
+
+/// SHA-256 of the arrays of a source: its counts, then the elements as stored.
+fn source_hash(counts: [usize; 3], arrays: [&Array; 2]) -> String {
+    let mut hasher = Sha256::new();
+    counts.iter().for_each(|&count| hasher.update((count as u64).to_le_bytes()));
+    arrays.iter().for_each(|array| hasher.update(array.content));
+    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// The source mesh, when it is the one of the manifest.
 fn read_source(archive: &mut Archive, manifest: &Manifest) -> Result<(Vec<Point>, Vec<u32>), Unreadable> {
     let (positions, cells) = (Array::take(archive, "source_positions")?, Array::take(archive, "source_cells")?);
     let (source, size) = (&manifest.source, manifest.target.cell_size());
-    let mut hasher = Sha256::new();
-    [source.vertices, size, source.cells].iter().for_each(|&count| hasher.update((count as u64).to_le_bytes()));
-    hasher.update(positions.content);
-    hasher.update(cells.content);
-    let hash: String = hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    let hash = source_hash([source.vertices, size, source.cells], [&positions, &cells]);
     let source_arrays = (positions.read_points(None, 3)?, cells.read(U4, None, size)?);
     let is_counted = (source_arrays.0.len(), source_arrays.1.len() / size) == (source.vertices, source.cells);
     readable(is_counted, "the source has another number of vertices or cells than the manifest says")?;
@@ -153,6 +194,53 @@ impl FoliationData {
             section_coordinates = Array::take(archive, "section_coordinates")?.read_points(rows, columns)?;
         }
         Ok(FoliationData { directions, lengths, section_vertices, section_coordinates })
+    }
+}
+
+impl HarmonicData {
+    /// Reads the map; also the vertices of the source as points.
+    fn read(archive: &mut Archive, manifest: &Manifest) -> Result<(Self, Vec<Point>), Unreadable> {
+        let (points, rings) = (Array::take(archive, "source_points")?, Array::take(archive, "source_rings")?);
+        let hash = source_hash([manifest.source.vertices, 2, manifest.source.cells], [&points, &rings]);
+        let (source_points, ring_sizes) = (points.read_points(None, 2)?, rings.read(U4, None, 1)?);
+        let is_counted = (source_points.len(), ring_sizes.len()) == (manifest.source.vertices, manifest.source.cells);
+        readable(is_counted, "the source has another number of vertices or rings than the manifest says")?;
+        readable(hash == manifest.source.content_sha256, "the source arrays do not have the stated content_sha256")?;
+        let total: u64 = ring_sizes.iter().map(|&n| u64::from(n)).sum();
+        let are_rings = total == source_points.len() as u64 && ring_sizes.iter().all(|&n| n >= 3);
+        readable(are_rings, "the rings do not have three vertices each, and all of them together")?;
+        let is_cylinder = manifest.target == Target::Annulus;
+        readable(ring_sizes.len() == 1 + usize::from(is_cylinder), "a polygon has one ring, an annulus two")?;
+        let count = Some(source_points.len());
+        let target_points = Array::take(archive, "target_points")?.read_points(count, 2)?;
+        let middle_points = Array::take(archive, "middle_points")?.read_points(count, 2)?;
+        let halves = [
+            HalfData::read(archive, HALF_NAMES[0], is_cylinder)?,
+            HalfData::read(archive, HALF_NAMES[1], is_cylinder)?,
+        ];
+        let positions = source_points.clone();
+        Ok((HarmonicData { ring_sizes, source_points, target_points, middle_points, is_cylinder, halves }, positions))
+    }
+}
+
+/// The arrays of the halves of a composite harmonic map.
+const HALF_NAMES: [[&str; 5]; 2] = [
+    ["source_boundary", "source_inner", "source_images", "source_triangles", "source_shifts"],
+    ["target_boundary", "target_inner", "target_images", "target_triangles", "target_shifts"],
+];
+
+impl HalfData {
+    fn read(archive: &mut Archive, names: [&'static str; 5], is_cylinder: bool) -> Result<Self, Unreadable> {
+        let [boundary, inner, images, triangles, shifts] = names;
+        let boundary = Array::take(archive, boundary)?.read(U4, None, 3)?;
+        let inner = Array::take(archive, inner)?.read_points(None, 2)?;
+        let images = Array::take(archive, images)?.read_points(Some(inner.len()), 2)?;
+        let triangles = Array::take(archive, triangles)?.read(U4, None, 3)?;
+        let shifts = match is_cylinder {
+            true => Array::take(archive, shifts)?.read(I1, Some(triangles.len() / 3), 3)?,
+            false => vec![],
+        };
+        Ok(HalfData { boundary, inner, images, triangles, shifts })
     }
 }
 

@@ -46,7 +46,7 @@ fn meets_segment_in_plane(triangle: &Triangle, segment: [Point; 2]) -> bool {
 }
 
 /// Whether two closed segments in the plane meet; neither is a point.
-fn segments_meet([a, b]: [Point; 2], [p, q]: [Point; 2]) -> bool {
+pub(crate) fn segments_meet([a, b]: [Point; 2], [p, q]: [Point; 2]) -> bool {
     let sides = [[p, q, a], [p, q, b], [a, b, p], [a, b, q]].map(|[x, y, z]| orientation_2d(x, y, z));
     if sides == [Ordering::Equal; 4] {
         return boxes_meet(&bounds(&[a, b]), &bounds(&[p, q])); // on one line

@@ -27,9 +27,9 @@ pub enum Verdict {
 pub struct Claim {
     /// The claim in words, with the theorem that was applied.
     pub statement: String,
-    /// `foliation`, `piecewise-linear` or `shell`.
+    /// `foliation`, `piecewise-linear`, `shell` or `composite-harmonic`.
     pub kind: String,
-    /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell` or `embedded-shell`.
+    /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon` or `annulus`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]

@@ -8,11 +8,11 @@ mod read;
 mod write;
 
 pub use read::{MapFileError, read_map};
-pub use write::{content_sha256, write_map, write_shell};
+pub use write::{content_sha256, write_harmonic, write_map, write_shell};
 
 use homeo_core::number::Rational;
 
-use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, Shell, Target};
+use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, HarmonicMap, Shell, Target};
 
 /// What a map file holds.
 #[derive(Debug)]
@@ -22,6 +22,8 @@ pub enum StoredMap {
     Foliation(FoliationMap),
     /// A shell with its projection.
     Shell(Shell),
+    /// A composite harmonic map between planar domains.
+    Harmonic(HarmonicMap),
 }
 
 /// A foliation map of a surface or of a volume.

@@ -6,13 +6,17 @@
 use std::io::{Cursor, Read};
 
 use homeo_core::mesh::{Adjacency, CellId, SimplicialComplex, VertexId};
+use homeo_core::planar::{PlanarDomain, Point2};
 use serde_json::Value;
 use zip::{CompressionMethod, ZipArchive};
 
 use super::npy::decode;
 use super::{FoliationMap, StoredMap};
 use crate::input::SourceMesh;
-use crate::map::{Centre, Foliation, FoliationParts, Section, Shell, ShellParts, Target, is_flat};
+use crate::map::{
+    BoundaryPoint, Centre, Foliation, FoliationParts, HalfParts, HarmonicMap, Middle, SHARE_BITS, Section, Shell,
+    ShellParts, Target, is_flat,
+};
 use crate::refine::{Carrier, RefinedMesh};
 
 /// Why a file is no map that can be evaluated.
@@ -75,6 +79,10 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
                     "a shell has the target `shell`, `section`, `immersed-shell` or `embedded-shell`".to_owned(),
                 )),
             }
+        }
+        "composite-harmonic" => {
+            is_of_dimension(&text("target"), 2)?;
+            Ok(StoredMap::Harmonic(file.harmonic(text("target") == "annulus")?))
         }
         other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
     }
@@ -161,6 +169,68 @@ impl<'b> File<'b> {
             Some(cell) => inconsistent(format!("cell {cell} of {} is flat", names[1])),
             None => Ok(SourceMesh::new(positions, complex)),
         }
+    }
+
+    fn harmonic(&mut self, is_cylinder: bool) -> Result<HarmonicMap, MapFileError> {
+        let sizes = self.array::<u32>("source_rings", 1)?;
+        if sizes.len() != 1 + usize::from(is_cylinder) {
+            return inconsistent("a polygon has one ring, an annulus two");
+        }
+        let [source, target] = ["source", "target"].map(|name| {
+            let rings = self.rings(&format!("{name}_points"), &sizes)?;
+            PlanarDomain::new(rings).map_err(|e| MapFileError::Inconsistent(format!("{name}: {e}")))
+        });
+        let (source, target) = (source?, target?);
+        let middle = Middle::new(self.rings("middle_points", &sizes)?);
+        let [source, target] =
+            [("source", source), ("target", target)].map(|(name, domain)| self.half(name, domain, is_cylinder));
+        Ok(HarmonicMap::new(middle, source?, target?))
+    }
+
+    fn rings(&mut self, name: &str, sizes: &[u32]) -> Result<Vec<Vec<Point2>>, MapFileError> {
+        let points = self.points_2d(name)?;
+        if sizes.iter().map(|&n| u64::from(n)).sum::<u64>() != points.len() as u64 || sizes.iter().any(|&n| n < 3) {
+            return inconsistent(format!("the rows of {name} are not those of rings of three vertices or more"));
+        }
+        let mut rest = &points[..];
+        Ok(sizes.iter().map(|&n| rest.split_off(..n as usize).unwrap_or_default().to_vec()).collect())
+    }
+
+    fn points_2d(&mut self, name: &str) -> Result<Vec<Point2>, MapFileError> {
+        let points = self.rows::<f64, 2>(name)?;
+        match points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+            Some(row) => inconsistent(format!("row {row} of {name} is not finite")),
+            None => Ok(points),
+        }
+    }
+
+    fn half(&mut self, name: &str, domain: PlanarDomain, is_cylinder: bool) -> Result<HalfParts, MapFileError> {
+        let named = |what: &str| format!("{name}_{what}");
+        let boundary: Vec<BoundaryPoint> = self
+            .rows::<u32, 3>(&named("boundary"))?
+            .into_iter()
+            .map(|[ring, edge, share]| BoundaryPoint { ring, edge, share })
+            .collect();
+        let exists = |p: &BoundaryPoint| {
+            domain.rings().get(p.ring as usize).is_some_and(|ring| (p.edge as usize) < ring.len())
+                && p.share < 1 << SHARE_BITS
+        };
+        if !boundary.iter().all(exists) {
+            return inconsistent(format!("a row of {name}_boundary is no point on an edge"));
+        }
+        let (inner, images) = (self.points_2d(&named("inner"))?, self.points_2d(&named("images"))?);
+        let triangles = self.rows::<u32, 3>(&named("triangles"))?;
+        let shifts = if is_cylinder { self.rows::<i8, 3>(&named("shifts"))? } else { Vec::new() };
+        let count = boundary.len() + inner.len();
+        if images.len() != inner.len() || is_cylinder && shifts.len() != triangles.len() {
+            return inconsistent(format!(
+                "the arrays of the {name}'s triangulation do not have the same number of rows"
+            ));
+        }
+        if triangles.iter().flatten().any(|&v| v as usize >= count) {
+            return inconsistent(format!("a row of {name}_triangles names a vertex that does not exist"));
+        }
+        Ok(HalfParts { domain, boundary, inner, images, triangles, shifts })
     }
 
     fn shell(&mut self, target: &str) -> Result<Shell, MapFileError> {

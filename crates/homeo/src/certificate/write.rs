@@ -3,6 +3,7 @@
 use std::io::{self, Seek, Write};
 
 use homeo_core::mesh::VertexId;
+use homeo_core::planar::{PlanarDomain, Point2};
 use serde_json::json;
 use sha2::{Digest, Sha256};
 use zip::write::SimpleFileOptions;
@@ -11,7 +12,7 @@ use zip::{CompressionMethod, ZipWriter};
 use super::npy::{Element, encode};
 use super::{FoliationMap, Provenance, either};
 use crate::input::SourceMesh;
-use crate::map::{Bijection, Centre, Foliation, Section, Shell};
+use crate::map::{Bijection, Centre, Foliation, HarmonicMap, Section, Shell};
 
 /// Writes a map with its certificate. The same map gives the same bytes.
 ///
@@ -49,6 +50,66 @@ pub fn write_shell(shell: &Shell, provenance: &Provenance, out: &mut (impl Write
         archive.mesh(["section_positions", "section_cells"], section)?;
     }
     archive.finish()
+}
+
+/// Writes a composite harmonic map with what its certificate needs. The same map gives the same bytes.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub fn write_harmonic(map: &HarmonicMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
+    let mut archive = Archive { zip: ZipWriter::new(out) };
+    let manifest = serde_json::to_vec_pretty(&planar_manifest(map, provenance)).map_err(io::Error::other)?;
+    archive.add("manifest.json", &manifest)?;
+    let source = &map.source().parts().domain;
+    let sizes = source.rings().iter().map(|ring| ring.len() as u32);
+    archive.points("source_points", &source.vertices().collect::<Vec<_>>())?;
+    archive.array("source_rings", &[source.rings().len()], sizes)?;
+    archive.points("target_points", &map.target().parts().domain.vertices().collect::<Vec<_>>())?;
+    archive.points("middle_points", &map.middle().rings().concat())?;
+    for (name, half) in [("source", map.source()), ("target", map.target())] {
+        let parts = half.parts();
+        let rows: Vec<u32> = parts.boundary.iter().flat_map(|p| [p.ring, p.edge, p.share]).collect();
+        archive.array(&format!("{name}_boundary"), &[parts.boundary.len(), 3], rows.into_iter())?;
+        archive.points(&format!("{name}_inner"), &parts.inner)?;
+        archive.points(&format!("{name}_images"), &parts.images)?;
+        let triangles = parts.triangles.as_flattened().iter().copied();
+        archive.array(&format!("{name}_triangles"), &[parts.triangles.len(), 3], triangles)?;
+        if map.middle().is_cylinder() {
+            let shifts = parts.shifts.as_flattened().iter().copied();
+            archive.array(&format!("{name}_shifts"), &[parts.shifts.len(), 3], shifts)?;
+        }
+    }
+    archive.finish()
+}
+
+fn planar_manifest(map: &HarmonicMap, provenance: &Provenance) -> serde_json::Value {
+    let source = &map.source().parts().domain;
+    json!({
+        "format": "homeo",
+        "version": 1,
+        "kind": "composite-harmonic",
+        "dimension": 2,
+        "target": if map.middle().is_cylinder() { "annulus" } else { "polygon" },
+        "centre": null,
+        "source": {
+            "name": provenance.source_name,
+            "vertices": source.vertex_count(),
+            "cells": source.rings().len(),
+            "content_sha256": domain_sha256(source),
+        },
+        "construction": {"program": provenance.program, "options": provenance.options},
+    })
+}
+
+/// SHA-256 of the arrays of a planar source as the map file stores them, in hexadecimal digits.
+pub fn domain_sha256(source: &PlanarDomain) -> String {
+    let mut bytes = Vec::new();
+    for count in [source.vertex_count(), 2, source.rings().len()] {
+        bytes.extend((count as u64).to_le_bytes());
+    }
+    source.vertices().flatten().for_each(|x| x.put(&mut bytes));
+    source.rings().iter().for_each(|ring| (ring.len() as u32).put(&mut bytes));
+    Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// SHA-256 of the arrays of a source mesh as the map file stores them, in hexadecimal digits.
@@ -102,6 +163,10 @@ impl<'w, W: Write + Seek> Archive<'w, W> {
         let (positions, cells) = (mesh.positions(), mesh.complex().cells());
         self.array(names[0], &[positions.len(), 3], positions.as_flattened().iter().copied())?;
         self.array(names[1], &[cells.len(), K], numbers(cells).into_iter())
+    }
+
+    fn points(&mut self, name: &str, points: &[Point2]) -> io::Result<()> {
+        self.array(name, &[points.len(), 2], points.as_flattened().iter().copied())
     }
 
     fn finish(self) -> io::Result<()> {

@@ -19,7 +19,8 @@ pub(super) fn boundary_points(domain: &PlanarDomain, spacing: f64) -> Vec<Bounda
     let mut points = Vec::new();
     for &(ring, edge, ends) in &edges {
         let n = domain.rings()[ring].len();
-        let is_neighbour = |&&(r, e, _): &&(usize, usize, _)| r == ring && [0, 1, n - 1].contains(&((e + n - edge) % n));
+        let is_neighbour =
+            |&&(r, e, _): &&(usize, usize, _)| r == ring && [0, 1, n - 1].contains(&((e + n - edge) % n));
         let others: Vec<[Point2; 2]> = edges.iter().filter(|other| !is_neighbour(other)).map(|e| e.2).collect();
         let mut push = |share| points.push(BoundaryPoint { ring: ring as u32, edge: edge as u32, share });
         halve(ends, &others, spacing, [0, 1 << SHARE_BITS], MOST_HALVINGS, &mut push);

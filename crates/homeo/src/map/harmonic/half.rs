@@ -43,6 +43,9 @@ pub struct Half {
     trees: [Tree; 2],
 }
 
+/// Images are never spread over more turns: shifts are small.
+const MOST_TURNS: f64 = 600.0;
+
 /// Where a triangulation is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
@@ -116,8 +119,8 @@ impl Half {
         let hull = self.trees[1].hull();
         let (at, [low, high]) = (turn.enclosure(), [hull.low[0], hull.high[0]]);
         let [first, last] = [(low - at.high()).ceil(), (high - at.low()).floor()];
-        // Nothing is tried where nothing is known.
-        if first.is_finite() && last.is_finite() { first as i32..=last as i32 } else { 1..=0 }
+        // Nothing is tried where nothing is known, or images are spread over so many turns as in damaged files only.
+        if last - first < MOST_TURNS { first as i32..=last as i32 } else { 1..=0 }
     }
 
     /// Takes a point from one side to the other by the triangle that holds it. `None` where rounding leaves open in which
