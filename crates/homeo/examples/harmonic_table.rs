@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use homeo::certificate::{Provenance, write_harmonic};
 use homeo::construct::harmonic::{HarmonicParams, harmonic_map};
-use homeo::map::{HalfParts, HarmonicMap};
+use homeo::map::{HalfParts, HarmonicMap, PlanarBijection};
 use homeo::progress::Silent;
 use homeo_core::number::Rational;
 use homeo_core::planar::{DomainPair, read_pair};
@@ -29,13 +29,13 @@ fn row(map: &HarmonicMap, start: Instant) -> Result<String, Box<dyn Error>> {
     };
     let checked = start.elapsed().as_secs_f64();
     let (mut exact, mut worst) = (0, 0.0f64);
-    for point in inner_points(map.source().parts()) {
+    for point in inner_points(map.source_half().parts()) {
         let there = map.forward_exact(&point.map(|x| Rational::from_f64(x).unwrap_or(Rational::ZERO)))?;
         let back = map.inverse_exact(&there)?;
         exact += usize::from(back.each_ref().map(Rational::to_f64) == point);
         worst = worst.max(map.forward(point)?.radius);
     }
-    let [source, target] = [map.source(), map.target()].map(|half| half.parts().triangles.len());
+    let [source, target] = [map.source_half(), map.target_half()].map(|half| half.parts().triangles.len());
     Ok(format!("{source} + {target} | {made:.2} | {verdict} | {checked:.2} | {exact} of {TRIPS} | {worst:.1e}"))
 }
 

@@ -227,8 +227,10 @@ impl<'b> File<'b> {
                 "the arrays of the {name}'s triangulation do not have the same number of rows"
             ));
         }
-        if triangles.iter().flatten().any(|&v| v as usize >= count) {
-            return inconsistent(format!("a row of {name}_triangles names a vertex that does not exist"));
+        if triangles.is_empty() || triangles.iter().flatten().any(|&v| v as usize >= count) {
+            return inconsistent(format!(
+                "there is no triangle, or a row of {name}_triangles names a vertex that does not exist"
+            ));
         }
         Ok(HalfParts { domain, boundary, inner, images, triangles, shifts })
     }

@@ -60,13 +60,13 @@ pub fn write_harmonic(map: &HarmonicMap, provenance: &Provenance, out: &mut (imp
     let mut archive = Archive { zip: ZipWriter::new(out) };
     let manifest = serde_json::to_vec_pretty(&planar_manifest(map, provenance)).map_err(io::Error::other)?;
     archive.add("manifest.json", &manifest)?;
-    let source = &map.source().parts().domain;
+    let source = &map.source_half().parts().domain;
     let sizes = source.rings().iter().map(|ring| ring.len() as u32);
     archive.points("source_points", &source.vertices().collect::<Vec<_>>())?;
     archive.array("source_rings", &[source.rings().len()], sizes)?;
-    archive.points("target_points", &map.target().parts().domain.vertices().collect::<Vec<_>>())?;
+    archive.points("target_points", &map.target_half().parts().domain.vertices().collect::<Vec<_>>())?;
     archive.points("middle_points", &map.middle().rings().concat())?;
-    for (name, half) in [("source", map.source()), ("target", map.target())] {
+    for (name, half) in [("source", map.source_half()), ("target", map.target_half())] {
         let parts = half.parts();
         let rows: Vec<u32> = parts.boundary.iter().flat_map(|p| [p.ring, p.edge, p.share]).collect();
         archive.array(&format!("{name}_boundary"), &[parts.boundary.len(), 3], rows.into_iter())?;
@@ -83,7 +83,7 @@ pub fn write_harmonic(map: &HarmonicMap, provenance: &Provenance, out: &mut (imp
 }
 
 fn planar_manifest(map: &HarmonicMap, provenance: &Provenance) -> serde_json::Value {
-    let source = &map.source().parts().domain;
+    let source = &map.source_half().parts().domain;
     json!({
         "format": "homeo",
         "version": 1,

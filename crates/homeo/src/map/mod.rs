@@ -12,6 +12,7 @@ mod foliation;
 mod harmonic;
 mod locate;
 mod nearest;
+mod planar;
 mod sample;
 mod section;
 mod shell;
@@ -19,8 +20,9 @@ mod steps;
 mod target;
 
 pub use foliation::{Centre, DEFAULT_ACCURACY, Foliation, FoliationParts};
-pub use harmonic::{BoundaryPoint, Enclosed2, Half, HalfParts, HarmonicMap, Middle, PlanarEvaluationError, SHARE_BITS};
+pub use harmonic::{BoundaryPoint, Half, HalfParts, HarmonicMap, Middle, SHARE_BITS};
 pub(crate) use nearest::is_flat;
+pub use planar::{Enclosed2, PlanarBijection, PlanarEvaluationError};
 pub use sample::{LeafPolyline, distortions};
 pub use section::Section;
 pub(crate) use shell::ShellSurface;

@@ -1,5 +1,7 @@
 //! One half of a composite harmonic map: a triangulated domain, flattened onto the middle.
 
+use std::collections::HashMap;
+
 use homeo_core::number::{Interval, Rational, Scalar};
 use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::Sign;
@@ -41,6 +43,11 @@ pub struct Half {
     parts: HalfParts,
     /// Over the triangles in the domain, and over their images.
     trees: [Tree; 2],
+    /// Corners of the triangles on both sides, rounded.
+    rounded: [Vec<[Point2; 3]>; 2],
+    /// Across the edge opposite each corner; `u32::MAX` on the boundary.
+    neighbours: Vec<[u32; 3]>,
+    is_cylinder: bool,
 }
 
 /// Images are never spread over more turns: shifts are small.
@@ -66,7 +73,37 @@ impl Half {
             Tree::new(&boxes)
         };
         let trees = [tree(Side::Domain), tree(Side::Image)];
-        Self { parts, trees }
+        let rounded = [Side::Domain, Side::Image].map(|side| {
+            let corners = |t| corners::<Interval>(&parts, middle, side, t).map(|p| p.map(|x| x.near()));
+            (0..parts.triangles.len()).map(corners).collect()
+        });
+        let neighbours = neighbours(&parts.triangles);
+        Self { parts, trees, rounded, neighbours, is_cylinder: middle.is_cylinder() }
+    }
+
+    pub(super) fn is_cylinder(&self) -> bool {
+        self.is_cylinder
+    }
+
+    pub(super) fn tree(&self, side: Side) -> &Tree {
+        &self.trees[usize::from(side == Side::Image)]
+    }
+
+    /// Corners of a triangle, rounded.
+    pub(super) fn rounded(&self, side: Side, triangle: usize) -> [Point2; 3] {
+        self.rounded[usize::from(side == Side::Image)][triangle]
+    }
+
+    /// The triangle across the edge opposite a corner.
+    pub(super) fn neighbour(&self, triangle: usize, corner: usize) -> Option<usize> {
+        let there = self.neighbours[triangle][corner];
+        (there != u32::MAX).then_some(there as usize)
+    }
+
+    /// The least and the greatest first coordinate of the images.
+    pub(super) fn reach(&self) -> [f64; 2] {
+        let hull = self.trees[1].hull();
+        [hull.low[0], hull.high[0]]
     }
 
     /// The numbers that define it.
@@ -85,8 +122,8 @@ impl Half {
     }
 
     /// Where the corners of a triangle go in the middle, rounded.
-    pub fn image(&self, middle: &Middle, triangle: usize) -> [Point2; 3] {
-        corners::<Interval>(&self.parts, middle, Side::Image, triangle).map(|p| p.map(|x| x.near()))
+    pub fn image(&self, triangle: usize) -> [Point2; 3] {
+        self.rounded(Side::Image, triangle)
     }
 
     /// Whether all triangles and all their images are counter-clockwise, exactly; the first that is not.
@@ -116,8 +153,7 @@ impl Half {
         if !middle.is_cylinder() {
             return 0..=0;
         }
-        let hull = self.trees[1].hull();
-        let (at, [low, high]) = (turn.enclosure(), [hull.low[0], hull.high[0]]);
+        let (at, [low, high]) = (turn.enclosure(), self.reach());
         let [first, last] = [(low - at.high()).ceil(), (high - at.low()).floor()];
         // Nothing is tried where nothing is known, or images are spread over so many turns as in damaged files only.
         if last - first < MOST_TURNS { first as i32..=last as i32 } else { 1..=0 }
@@ -126,11 +162,10 @@ impl Half {
     /// Takes a point from one side to the other by the triangle that holds it. `None` where rounding leaves open in which
     /// triangle it lies; an empty answer where it lies in none.
     pub(super) fn carry<T: Scalar>(&self, middle: &Middle, from: Side, point: &[T; 2]) -> Option<Option<[T; 2]>> {
-        let tree = &self.trees[usize::from(from == Side::Image)];
         let [x, y] = point.each_ref().map(Scalar::enclosure);
         let region = Aabb { low: [x.low(), y.low(), 0.0], high: [x.high(), y.high(), 0.0] };
         let mut answer = Some(None);
-        tree.query_box(&region, |triangle| {
+        self.tree(from).query_box(&region, |triangle| {
             if matches!(answer, Some(None)) {
                 answer = self.carry_by(middle, from, triangle, point);
             }
@@ -163,6 +198,18 @@ impl Half {
         };
         Some(Some([coordinate(0), coordinate(1)]))
     }
+}
+
+/// Across the edge opposite each corner.
+fn neighbours(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut edges = HashMap::with_capacity(3 * triangles.len());
+    for (t, corners) in triangles.iter().enumerate() {
+        (0..3).for_each(|k| {
+            edges.insert([corners[(k + 1) % 3], corners[(k + 2) % 3]], t as u32);
+        });
+    }
+    let across = |corners: &[u32; 3], k: usize| edges.get(&[corners[(k + 2) % 3], corners[(k + 1) % 3]]);
+    triangles.iter().map(|corners| [0, 1, 2].map(|k| across(corners, k).copied().unwrap_or(u32::MAX))).collect()
 }
 
 /// Twice the area of a triangle.

@@ -6,14 +6,17 @@
 
 mod half;
 mod middle;
+mod walk;
 
 pub use half::{BoundaryPoint, Half, HalfParts};
 pub use middle::{Middle, SHARE_BITS};
 
 use half::Side;
 use homeo_core::number::{Interval, Rational, Scalar};
-use homeo_core::planar::Point2;
-use rayon::prelude::*;
+use homeo_core::planar::{PlanarDomain, Point2};
+
+use super::planar::{Enclosed2, PlanarBijection, PlanarEvaluationError};
+use walk::Walk;
 
 /// A homeomorphism between planar domains whose vertices correspond; linear on every edge.
 #[derive(Clone, Debug)]
@@ -21,26 +24,6 @@ pub struct HarmonicMap {
     middle: Middle,
     source: Half,
     target: Half,
-}
-
-/// A floating-point answer in the plane with a bound of its error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Enclosed2 {
-    /// The answer.
-    pub point: Point2,
-    /// The exact answer differs from `point` by at most this in each coordinate.
-    pub radius: f64,
-}
-
-/// Why a point has no image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PlanarEvaluationError {
-    /// It lies outside.
-    #[error("the point lies outside the {0}")]
-    Outside(&'static str),
-    /// A coordinate is not finite.
-    #[error("the point has a coordinate that is not a finite number")]
-    NotFinite,
 }
 
 impl HarmonicMap {
@@ -56,29 +39,13 @@ impl HarmonicMap {
     }
 
     /// The triangulated source.
-    pub fn source(&self) -> &Half {
+    pub fn source_half(&self) -> &Half {
         &self.source
     }
 
     /// The triangulated target.
-    pub fn target(&self) -> &Half {
+    pub fn target_half(&self) -> &Half {
         &self.target
-    }
-
-    /// Image of a point of the source, with a bound of the error.
-    ///
-    /// # Errors
-    /// When the point does not lie in the source, exactly.
-    pub fn forward(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
-        self.enclosed(point, [&self.source, &self.target])?.ok_or(PlanarEvaluationError::Outside("source"))
-    }
-
-    /// The point of the source whose image is given, with a bound of the error.
-    ///
-    /// # Errors
-    /// When the point does not lie in the target, exactly.
-    pub fn inverse(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
-        self.enclosed(point, [&self.target, &self.source])?.ok_or(PlanarEvaluationError::Outside("target"))
     }
 
     /// Image of a rational point, exactly.
@@ -95,16 +62,6 @@ impl HarmonicMap {
     /// When the point does not lie in the target.
     pub fn inverse_exact(&self, point: &[Rational; 2]) -> Result<[Rational; 2], PlanarEvaluationError> {
         self.exact(point, [&self.target, &self.source]).ok_or(PlanarEvaluationError::Outside("target"))
-    }
-
-    /// Images of many points, in parallel.
-    pub fn forward_batch(&self, points: &[Point2]) -> Vec<Result<Enclosed2, PlanarEvaluationError>> {
-        points.par_iter().map(|&point| self.forward(point)).collect()
-    }
-
-    /// Preimages of many points, in parallel.
-    pub fn inverse_batch(&self, points: &[Point2]) -> Vec<Result<Enclosed2, PlanarEvaluationError>> {
-        points.par_iter().map(|&point| self.inverse(point)).collect()
     }
 
     /// First in intervals, and exactly where these leave something open.
@@ -137,5 +94,31 @@ impl HarmonicMap {
         }
         // The halves cover the same middle: only rounding can have missed it.
         None
+    }
+}
+
+impl PlanarBijection for HarmonicMap {
+    fn source(&self) -> &PlanarDomain {
+        &self.source.parts().domain
+    }
+
+    fn target(&self) -> &PlanarDomain {
+        &self.target.parts().domain
+    }
+
+    fn forward(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        self.enclosed(point, [&self.source, &self.target])?.ok_or(PlanarEvaluationError::Outside("source"))
+    }
+
+    fn inverse(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        self.enclosed(point, [&self.target, &self.source])?.ok_or(PlanarEvaluationError::Outside("target"))
+    }
+
+    fn inverse_along(&self, points: &[Point2], preimages: &mut [Option<Point2>]) {
+        let (mut to_middle, mut from_middle) =
+            (Walk::new(&self.target, Side::Domain), Walk::new(&self.source, Side::Image));
+        for (preimage, &point) in preimages.iter_mut().zip(points) {
+            *preimage = to_middle.carry(point).and_then(|middle| from_middle.carry(middle));
+        }
     }
 }
