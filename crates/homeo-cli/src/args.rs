@@ -67,6 +67,8 @@ pub enum Verb {
     Transfer(TransferArgs),
     /// The map of a shell as two meshes with one connectivity
     Pl(PlArgs),
+    /// Warp a picture or points as a polygon moves, and never fold
+    Warp(WarpArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
     /// Check the certificate of a map, independently of how it was made
@@ -86,6 +88,7 @@ impl Verb {
             Self::Remesh(_) => "remesh",
             Self::Transfer(_) => "transfer",
             Self::Pl(_) => "pl",
+            Self::Warp(_) => "warp",
             Self::Eval(_) => "eval",
             Self::Verify(_) => "verify",
             Self::Report(_) => "report",
@@ -463,6 +466,77 @@ pub struct ReportArgs {
     /// The page to write
     #[arg(short, long, value_name = "FILE.html")]
     pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  homeo warp testdata/images/checker.png --from square.json --to arrow.json -o warped.png
+  homeo warp points.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo
+
+Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is
+{\"source\": ..., \"target\": ...}. Vertices correspond by number. What lies outside the target becomes
+transparent. The map's certificate is checked before anything is written; `homeo verify` checks it again.")]
+pub struct WarpArgs {
+    /// A picture (PNG, JPEG; 8 or 16 bits, with opacity or without) or points of the plane (.csv, .npy)
+    #[arg(value_name = "INPUT")]
+    pub input: PathBuf,
+    /// The polygon before it moves
+    #[arg(long, value_name = "A.json", requires = "to", conflicts_with = "pair")]
+    pub from: Option<PathBuf>,
+    /// The polygon after it has moved
+    #[arg(long, value_name = "B.json", requires = "from")]
+    pub to: Option<PathBuf>,
+    /// Both in one file
+    #[arg(long, value_name = "PAIR.json", required_unless_present = "from")]
+    pub pair: Option<PathBuf>,
+    /// The warped picture or points, in a format by its extension
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Keep the map with its certificate
+    #[arg(long, value_name = "MAP.homeo")]
+    pub map: Option<PathBuf>,
+    /// Where the polygons lie on a picture [default: pixels with --from, fit with --pair]
+    #[arg(long, value_enum, value_name = "HOW")]
+    pub coordinates: Option<Coordinates>,
+    /// How a picture is read between its pixels
+    #[arg(long, value_enum, value_name = "FILTER", default_value_t = FilterName::Bicubic)]
+    pub filter: FilterName,
+    /// About how many triangles the map has on either side
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = at_least_one)]
+    pub triangles: usize,
+    /// The convex polygon between source and target
+    #[arg(long, value_enum, value_name = "SHAPE", default_value_t = MiddleName::Lengths)]
+    pub middle: MiddleName,
+    /// Polygons with a hole: by how much its rim turns [default: the pair's `winding_hint`, or as little as possible]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub turn: Option<f64>,
+    /// Save where every pixel of the result comes from, as float32 of shape (height, width, 2): what `remap` takes
+    #[arg(long, value_name = "FIELD.npy")]
+    pub field: Option<PathBuf>,
+}
+
+/// Where polygons lie on a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Coordinates {
+    /// In pixels, right and down from the upper left corner
+    Pixels,
+    /// Both polygons in the middle of the picture, as large as they fit, y upwards
+    Fit,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FilterName {
+    Linear,
+    Bicubic,
+    Lanczos,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MiddleName {
+    /// On a circle, arcs by the averages of the edges' lengths
+    Lengths,
+    /// A regular polygon
+    Regular,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -25,6 +25,7 @@ mod session;
 mod shell;
 mod text;
 mod verify;
+mod warp;
 mod welded;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -39,7 +40,8 @@ use outputs::Outputs;
 use session::Session;
 
 /// As typed; wrong usage is reported before the command line is understood.
-const VERBS: [&str; 10] = ["info", "map", "shell", "simplify", "remesh", "transfer", "pl", "eval", "verify", "report"];
+const VERBS: [&str; 11] =
+    ["info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "eval", "verify", "report"];
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -101,6 +103,7 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
         Verb::Remesh(options) => inside::remesh(session, options, &mut outputs),
         Verb::Transfer(options) => inside::transfer(session, options, &mut outputs),
         Verb::Pl(options) => inside::pl(session, options, &mut outputs),
+        Verb::Warp(options) => warp::run(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),
         Verb::Report(options) => report::run(session, options, &mut outputs),

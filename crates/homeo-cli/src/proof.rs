@@ -5,7 +5,9 @@ use std::path::Path;
 
 use homeo::certificate::{FoliationMap, StoredMap, read_map};
 use homeo::input::SourceMesh;
+use homeo::map::PlanarBijection;
 use homeo::progress::Progress;
+use homeo_core::planar::PlanarDomain;
 use homeo_verify::{Claim, Obstacle, Unreadable, Verdict, Witness, verify_bytes};
 use serde_json::{Map, Value, json};
 
@@ -154,7 +156,15 @@ pub fn map_json(map: &StoredMap, path: &Path) -> Value {
         StoredMap::Foliation(FoliationMap::Surface(map)) => source_json(map.source(), path),
         StoredMap::Foliation(FoliationMap::Volume(map)) => source_json(map.source(), path),
         StoredMap::Shell(shell) => source_json(shell.source(), path),
+        StoredMap::Harmonic(map) => domain_json(map.source(), path),
     }
+}
+
+/// The `input` field for a polygon.
+pub fn domain_json(domain: &PlanarDomain, path: &Path) -> Value {
+    json!({
+        "path": path.display().to_string(), "vertices": domain.vertex_count(), "rings": domain.rings().len(),
+    })
 }
 
 fn source_json<const K: usize>(source: &SourceMesh<K>, path: &Path) -> Value {

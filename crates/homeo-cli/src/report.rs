@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use homeo::certificate::{FoliationMap, StoredMap};
-use homeo::export::{ReportData, VerdictWords, report_of_map, report_of_shell, write_report};
-use homeo::map::{Bijection, Shell};
+use homeo::export::{ReportData, VerdictWords, planar_page, report_of_map, report_of_shell, write_report};
+use homeo::map::{Bijection, PlanarBijection, Shell};
 use homeo::progress::Progress;
 use homeo_core::mesh::SimplicialComplex;
 use homeo_core::spatial::Aabb;
@@ -41,6 +41,12 @@ pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Re
             stage_shell(session, &options.output, &title, &shell, &claim, outputs)?;
             (title, json!({"prisms": shell.parts().prisms.len()}))
         }
+        StoredMap::Harmonic(map) => {
+            session.stage("write");
+            let title = title(&options.map, "target polygon");
+            stage_planar(session, &options.output, &title, &map, &claim, outputs)?;
+            (title, json!({"triangles": map.source_half().parts().triangles.len()}))
+        }
     };
     session.end_stage();
     let mut lines = Lines::default();
@@ -63,6 +69,23 @@ pub fn title(input: &Path, target: &str) -> String {
 /// What the source is mapped onto.
 fn words_for_image(shell: &Shell) -> &'static str {
     if shell.section().is_some() { "section in its shell" } else { "middle surface of its shell" }
+}
+
+/// Stages the page of a map between planar domains.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn stage_planar(
+    session: &Session,
+    path: &Path,
+    title: &str,
+    map: &dyn PlanarBijection,
+    claim: &Claim,
+    outputs: &mut Outputs,
+) -> Result<()> {
+    let page = planar_page(map, title, &claim.statement);
+    outputs.stage(session, path, |out| std::io::Write::write_all(out, page.as_bytes()).map_err(|e| e.to_string()))?;
+    Ok(())
 }
 
 /// Stages a page.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use homeo::certificate::read_map;
 use homeo::progress::Progress;
-use homeo_verify::{Claim, SourceMatch, Verdict, compare_source, verify_bytes};
+use homeo_verify::{Claim, SourceMatch, Verdict, compare_polygon, compare_source, verify_bytes};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -13,6 +13,7 @@ use crate::failure::{Exit, Failure, Result};
 use crate::mesh_input::{self, Requested};
 use crate::proof;
 use crate::session::Session;
+use crate::warp::polygons;
 
 /// Checks a map file, and whether it is about a given mesh.
 pub fn run(session: &Session, options: &VerifyArgs) -> Result<Answer> {
@@ -32,7 +33,10 @@ pub fn run(session: &Session, options: &VerifyArgs) -> Result<Answer> {
     let mut source = None;
     if let Some(mesh) = &options.source {
         let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
-        source = Some(compare(session, &bytes, mesh, requested)?);
+        source = Some(match claim.kind.as_str() {
+            "composite-harmonic" => compare_domain(&bytes, mesh)?,
+            _ => compare(session, &bytes, mesh, requested)?,
+        });
     }
     session.fact("input", described(&claim, &bytes, &options.map));
     let fields = json!({
@@ -63,9 +67,28 @@ fn compare(session: &Session, bytes: &[u8], path: &Path, requested: Requested) -
     }
 }
 
-/// The counts of the source are among what was checked, but for shells.
+/// The same for a map between planar domains and a polygon, or a pair whose source it is.
+fn compare_domain(bytes: &[u8], path: &Path) -> Result<Value> {
+    let domain = polygons::source(path)?;
+    let described = |same: bool| {
+        let mut described = proof::domain_json(&domain, path);
+        described["same"] = json!(same);
+        described
+    };
+    match compare_polygon(bytes, domain.rings()) {
+        Ok(SourceMatch::Same) => Ok(described(true)),
+        Ok(SourceMatch::Different(what)) => Err(Failure::input(
+            "other-source",
+            format!("the certificate holds, but the map is not about {}: {what}", path.display()),
+        )
+        .with("source", described(false))),
+        Err(error) => Err(Failure::bug(format!("a map that was certified became unreadable: {error}"))),
+    }
+}
+
+/// The counts of the source are among what was checked, but for shells and planar domains.
 fn described(claim: &Claim, bytes: &[u8], path: &Path) -> Value {
-    if let ("shell", Ok(map)) = (claim.kind.as_str(), read_map(bytes)) {
+    if let ("shell" | "composite-harmonic", Ok(map)) = (claim.kind.as_str(), read_map(bytes)) {
         return proof::map_json(&map, path);
     }
     let count = |what: &str| claim.checked.iter().find(|(name, _)| name.starts_with(what)).map(|&(_, n)| n);
@@ -84,7 +107,8 @@ fn words(claim: &Claim, options: &VerifyArgs) -> String {
             [(options.weld, " --weld"), (options.triangulate, " --triangulate"), (options.orient, " --orient")];
         let asked: String = changed.iter().filter(|(is_asked, _)| *is_asked).map(|(_, option)| *option).collect();
         let after = if asked.is_empty() { asked } else { format!(", after{asked}") };
-        text.push_str(&format!("        bit for bit the mesh of {}{after}\n", path.display()));
+        let what = if claim.kind == "composite-harmonic" { "polygon" } else { "mesh" };
+        text.push_str(&format!("        bit for bit the {what} of {}{after}\n", path.display()));
     }
     text.push_str("\nlimits\n");
     for limit in &claim.limits {

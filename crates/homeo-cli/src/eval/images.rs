@@ -3,16 +3,19 @@
 use std::fmt;
 
 use homeo::certificate::{FoliationMap, StoredMap};
-use homeo::map::{Bijection, Enclosed, EvaluationError, Shell, ShellEvaluationError};
+use homeo::map::{
+    Bijection, Enclosed, Enclosed2, EvaluationError, HarmonicMap, PlanarBijection, PlanarEvaluationError, Shell,
+    ShellEvaluationError,
+};
 use homeo_core::number::Rational;
 use rayon::prelude::*;
 
 /// Which way points go.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// From the mesh onto the target; in a shell, onto its other section, or onto the middle surface.
+    /// From the mesh or polygon onto the target; in a shell, onto its other section, or onto the middle surface.
     Forward,
-    /// Back to the mesh; in a shell, onto the source surface.
+    /// Back to it; in a shell, onto the source surface.
     Inverse,
 }
 
@@ -20,6 +23,7 @@ pub enum Direction {
 pub enum NoImage {
     Map(EvaluationError),
     Shell(ShellEvaluationError),
+    Planar(PlanarEvaluationError),
 }
 
 impl NoImage {
@@ -34,6 +38,7 @@ impl fmt::Display for NoImage {
         match self {
             Self::Map(error) => error.fmt(formatter),
             Self::Shell(error) => error.fmt(formatter),
+            Self::Planar(error) => error.fmt(formatter),
         }
     }
 }
@@ -58,6 +63,14 @@ pub fn floating(map: &StoredMap, direction: Direction, points: &[[f64; 3]]) -> V
             };
             points.par_iter().map(|point| one(point).map_err(NoImage::Shell)).collect()
         }
+        StoredMap::Harmonic(map) => {
+            let one = |&[x, y, _]: &[f64; 3]| match direction {
+                Direction::Forward => map.forward([x, y]),
+                Direction::Inverse => map.inverse([x, y]),
+            };
+            let in_space = |Enclosed2 { point: [x, y], radius }| Enclosed { point: [x, y, 0.0], radius };
+            points.par_iter().map(|point| one(point).map(in_space).map_err(NoImage::Planar)).collect()
+        }
     }
 }
 
@@ -66,6 +79,7 @@ pub fn exact(map: &StoredMap, direction: Direction, points: &[[Rational; 3]]) ->
     let one = |point: &[Rational; 3]| match map {
         StoredMap::Foliation(map) => exact_in_map(map, direction, point).map_err(NoImage::Map),
         StoredMap::Shell(shell) => exact_in_shell(shell, direction, point).map_err(NoImage::Shell),
+        StoredMap::Harmonic(map) => exact_in_plane(map, direction, point).map_err(NoImage::Planar),
     };
     points.par_iter().map(one).collect()
 }
@@ -79,6 +93,19 @@ fn exact_in_map(
         Direction::Forward => map.forward_exact(point),
         Direction::Inverse => map.inverse_exact(point),
     }
+}
+
+fn exact_in_plane(
+    map: &HarmonicMap,
+    direction: Direction,
+    [x, y, _]: &[Rational; 3],
+) -> Result<[Rational; 3], PlanarEvaluationError> {
+    let point = [x.clone(), y.clone()];
+    let [x, y] = match direction {
+        Direction::Forward => map.forward_exact(&point),
+        Direction::Inverse => map.inverse_exact(&point),
+    }?;
+    Ok([x, y, Rational::ZERO])
 }
 
 fn exact_in_shell(

@@ -147,8 +147,9 @@ fn check_columns(
     let (name, dimension, flat_source) = match map {
         StoredMap::Foliation(map) => (map.target().name(), map.target().dimension(), is_flat(map)),
         StoredMap::Shell(_) => ("shell", 3, false),
+        StoredMap::Harmonic(_) => ("polygon", 2, true),
     };
-    if options.inverse && dimension == 2 {
+    if dimension == 2 && (options.inverse || matches!(map, StoredMap::Harmonic(_))) {
         return match (0..rows).find(|&row| !is_planar(row)) {
             Some(row) => {
                 Err(wrong(format!("row {}: the third coordinate of a point of the {name} must be 0", row + 1)))
@@ -175,6 +176,7 @@ fn is_flat(map: &FoliationMap) -> bool {
 fn output_columns(options: &EvalArgs, map: &StoredMap) -> usize {
     match map {
         StoredMap::Foliation(map) if !options.inverse => map.target().dimension(),
+        StoredMap::Harmonic(_) => 2,
         _ => 3,
     }
 }

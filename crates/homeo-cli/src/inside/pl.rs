@@ -30,7 +30,7 @@ pub fn run(session: &Session, options: &PlArgs, outputs: &mut Outputs) -> Result
     let (map, claim) = proof::open_certified(session, &options.map)?;
     let StoredMap::Shell(shell) = map else {
         let message = format!(
-            "{} is a foliation: its piecewise-linear form is not supported yet; `homeo eval` gives images of points, exactly with --exact",
+            "{} is no shell: the piecewise-linear form of other maps is not supported yet; `homeo eval` gives images of points, exactly with --exact",
             options.map.display()
         );
         return Err(Failure::input("wrong-kind", message));

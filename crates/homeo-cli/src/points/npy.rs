@@ -65,19 +65,33 @@ fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
 /// The bytes of an `.npy` file with the table.
 pub fn encode(table: &Table<f64>) -> Vec<u8> {
     let (rows, columns) = (table.rows.len(), table.columns);
-    let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
+    let mut bytes = begin("<f8", &format!("({rows}, {columns})"), rows * columns * 8);
+    for row in &table.rows {
+        row[..columns].iter().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
+    }
+    bytes
+}
+
+/// A field of pixel coordinates as float32 of shape (height, width, 2).
+pub fn encode_field(field: &[[f32; 2]], width: usize) -> Vec<u8> {
+    let height = field.len() / width.max(1);
+    let mut bytes = begin("<f4", &format!("({height}, {width}, 2)"), field.len() * 8);
+    field.as_flattened().iter().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
+    bytes
+}
+
+/// Magic and header of an array, with room for its elements.
+fn begin(kind: &str, shape: &str, size: usize) -> Vec<u8> {
+    let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     // The data begin at a multiple of 64 bytes.
     let padding = (64 - (MAGIC.len() + 4 + header.len() + 1) % 64) % 64;
     header.push_str(&" ".repeat(padding));
     header.push('\n');
-    let mut bytes = Vec::with_capacity(10 + header.len() + rows * columns * 8);
+    let mut bytes = Vec::with_capacity(10 + header.len() + size);
     bytes.extend_from_slice(MAGIC);
     bytes.extend_from_slice(&[1, 0]);
     bytes.extend_from_slice(&(header.len() as u16).to_le_bytes());
     bytes.extend_from_slice(header.as_bytes());
-    for row in &table.rows {
-        row[..columns].iter().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
-    }
     bytes
 }
 

@@ -108,8 +108,8 @@ pub enum PairError {
 }
 
 impl DomainPair {
-    /// A pair of domains with corresponding rings. Holes may be listed either way round, but the same in both: where
-    /// both run counter-clockwise both are turned, first vertices kept.
+    /// A pair of domains with corresponding rings. These may run either way round, but the same way in both: where both
+    /// run the wrong way both are turned, first vertices kept.
     ///
     /// # Errors
     /// What does not correspond, or is no domain.
@@ -121,7 +121,8 @@ impl DomainPair {
             if a.len() != b.len() {
                 return Err(PairError::VertexCounts { ring, here: a.len(), there: b.len() });
             }
-            if ring > 0 && turn(a) == Sign::Positive && turn(b) == Sign::Positive {
+            let wrong = if ring == 0 { Sign::Negative } else { Sign::Positive };
+            if turn(a) == wrong && turn(b) == wrong {
                 a[1..].reverse();
                 b[1..].reverse();
             }
@@ -148,12 +149,17 @@ mod tests {
     }
 
     #[test]
-    fn holes_may_run_either_way_round() {
+    fn rings_may_run_either_way_round() {
         let outer = vec![[-4.0, -4.0], [4.0, -4.0], [0.0, 4.0]];
         let hole = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let rings = vec![outer.clone(), hole.clone()];
         let pair = DomainPair::new(rings.clone(), rings).unwrap();
         assert_eq!(pair.source.rings()[1], [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]);
+        let clockwise = vec![vec![[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]];
+        let pair = DomainPair::new(clockwise.clone(), clockwise.clone()).unwrap();
+        assert_eq!(pair.source.rings()[0], [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+        let other_way = vec![vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]];
+        assert!(matches!(DomainPair::new(clockwise, other_way), Err(PairError::Source(DomainError::WrongWay { .. }))));
         let turned: Vec<_> = hole.iter().rev().copied().collect();
         let error = DomainPair::new(vec![outer.clone(), hole.clone()], vec![outer.clone(), turned]).unwrap_err();
         assert!(matches!(error, PairError::Source(DomainError::WrongWay { ring: 1, .. })));

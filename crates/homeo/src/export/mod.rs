@@ -44,6 +44,7 @@ mod of_shell;
 mod overlay;
 mod pack;
 mod page;
+mod planar;
 mod scene;
 mod simplify;
 #[cfg(test)]
@@ -52,6 +53,7 @@ mod tests;
 pub use data::{CellList, CellMesh, Leaf, ReportData, ShellPicture, TargetShape, VerdictWords};
 pub use of_map::report_of_map;
 pub use of_shell::report_of_shell;
+pub use planar::planar_page;
 
 use std::io::{self, Write};
 

@@ -16,22 +16,19 @@ use crate::map::PlanarBijection;
 use crate::progress::Progress;
 
 /// Where pixels lie in the plane of the domains: pixel coordinates run right and down from the upper left corner, whose
-/// pixel has its centre at `(0.5, 0.5)`; those of the domains right and up.
+/// pixel has its centre at `(0.5, 0.5)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// The pixel coordinates of the domains' origin.
     pub origin: Point2,
     /// Pixels for one unit of the domains.
     pub scale: f64,
+    /// Whether the second coordinate of the domains grows upwards, against that of the pixels.
+    pub is_upwards: bool,
 }
 
 impl Placement {
-    /// Domains given in pixels, but upwards from the lower left corner.
-    pub fn upwards(height: usize) -> Self {
-        Self { origin: [0.0, height as f64], scale: 1.0 }
-    }
-
-    /// Puts both domains of a pair into the middle of a picture, as large as they fit.
+    /// Puts both domains of a pair into the middle of a picture, as large as they fit, upwards.
     ///
     /// ```
     /// use homeo::warp::Placement;
@@ -48,17 +45,21 @@ impl Placement {
         let size = [width as f64, height as f64];
         let scale = (size[0] / (high[0] - low[0])).min(size[1] / (high[1] - low[1]));
         let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));
-        Self { origin: [0.5 * size[0] - scale * middle[0], 0.5 * size[1] + scale * middle[1]], scale }
+        Self { origin: [0.5 * size[0] - scale * middle[0], 0.5 * size[1] + scale * middle[1]], scale, is_upwards: true }
+    }
+
+    fn down(&self) -> f64 {
+        if self.is_upwards { -1.0 } else { 1.0 }
     }
 
     /// The point of the domains' plane at a pixel coordinate.
     pub fn to_plane(&self, [x, y]: Point2) -> Point2 {
-        [(x - self.origin[0]) / self.scale, (self.origin[1] - y) / self.scale]
+        [(x - self.origin[0]) / self.scale, self.down() * (y - self.origin[1]) / self.scale]
     }
 
     /// The pixel coordinate of a point of the domains' plane.
     pub fn to_pixels(&self, [x, y]: Point2) -> Point2 {
-        [self.origin[0] + self.scale * x, self.origin[1] - self.scale * y]
+        [self.origin[0] + self.scale * x, self.origin[1] + self.down() * self.scale * y]
     }
 }
 

@@ -1,0 +1,232 @@
+//! `homeo warp`: pictures and points move with a polygon, one-to-one.
+
+mod picture;
+pub mod polygons;
+
+use std::path::Path;
+
+use homeo::certificate::{Provenance, write_harmonic};
+use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
+use homeo::map::{HarmonicMap, PlanarBijection};
+use homeo::progress::Progress;
+use homeo::warp::{Filter, Placement, backward_field};
+use homeo_core::planar::DomainPair;
+use homeo_verify::Claim;
+use serde_json::{Value, json};
+
+use crate::answer::Answer;
+use crate::args::{Coordinates, FilterName, MiddleName, WarpArgs};
+use crate::failure::{Failure, Result};
+use crate::outputs::{Outputs, check_target};
+use crate::points::{self, PointFormat, Table, csv, npy};
+use crate::proof;
+use crate::session::Session;
+use crate::text::{Lines, file_name, stages};
+
+use picture::Picture;
+
+/// Makes the map, proves it and moves what is to be moved.
+pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Result<Answer> {
+    check_outputs(options)?;
+    session.stage("read");
+    let (pair, turn) = polygons::read(options)?;
+    let first = polygons::paths(options)[0];
+    session.fact("input", proof::domain_json(&pair.source, first));
+    let input = Input::read(&options.input)?;
+    let params = HarmonicParams { triangles: options.triangles, middle: shape(options.middle), turn_degrees: turn };
+    let map = harmonic_map(&pair, params, session).map_err(|error| explain(session, &error))?;
+    let provenance = provenance(options, first, turn);
+    let claim = proof::write_and_check(session, options.map.as_deref(), outputs, |mut out| {
+        write_harmonic(&map, &provenance, &mut out)
+    })?;
+    session.stage("warp");
+    let done = input.warp(session, options, &pair, &map, outputs)?;
+    session.end_stage();
+    Ok(answer(session, options, &map, &claim, done))
+}
+
+/// What is moved.
+enum Input {
+    Picture(Picture),
+    Points(Table<f64>),
+}
+
+fn check_outputs(options: &WarpArgs) -> Result<()> {
+    let mut inputs = vec![options.input.as_path()];
+    inputs.extend(polygons::paths(options));
+    let paths: Vec<&Path> =
+        [&options.output, &options.map, &options.field].into_iter().filter_map(|path| path.as_deref()).collect();
+    for (k, path) in paths.iter().enumerate() {
+        check_target(path, &inputs)?;
+        if paths[..k].contains(path) {
+            return Err(Failure::usage(format!("two outputs have the name {}", path.display())));
+        }
+    }
+    let is_picture = picture::is_picture(&options.input);
+    match &options.output {
+        Some(output) if is_picture && !picture::is_picture(output) => {
+            Err(Failure::usage(format!("{}: pictures are .png or .jpg", output.display())))
+        }
+        Some(output) if !is_picture => PointFormat::of_path(output).map(|_| ()),
+        None if paths.is_empty() => Err(Failure::usage("give -o OUT for what is warped, or --map for the map")),
+        _ if !is_picture && options.field.is_some() => Err(Failure::usage("--field is about the pixels of a picture")),
+        _ => Ok(()),
+    }
+}
+
+fn shape(name: MiddleName) -> MiddleShape {
+    match name {
+        MiddleName::Lengths => MiddleShape::AveragedLengths,
+        MiddleName::Regular => MiddleShape::Regular,
+    }
+}
+
+fn filter(name: FilterName) -> Filter {
+    match name {
+        FilterName::Linear => Filter::Linear,
+        FilterName::Bicubic => Filter::Bicubic,
+        FilterName::Lanczos => Filter::Lanczos,
+    }
+}
+
+fn explain(session: &Session, error: &HarmonicError) -> Failure {
+    match error {
+        HarmonicError::Cancelled => session.stopped(),
+        HarmonicError::TooManyHoles(_) => Failure::input("too-many-holes", error.to_string()),
+        _ => Failure::limits("no-map", format!("{error}; nothing was written")),
+    }
+}
+
+fn provenance(options: &WarpArgs, source: &Path, turn: Option<f64>) -> Provenance {
+    Provenance {
+        source_name: file_name(source),
+        program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
+        options: json!({
+            "triangles": options.triangles, "turn_degrees": turn,
+            "middle": if options.middle == MiddleName::Regular { "regular" } else { "lengths" },
+        }),
+    }
+}
+
+/// What was moved.
+struct Done {
+    fields: Value,
+    words: String,
+    outside: usize,
+}
+
+impl Input {
+    fn read(path: &Path) -> Result<Self> {
+        if picture::is_picture(path) {
+            return picture::read(path).map(Self::Picture);
+        }
+        let points = points::read(path)?;
+        match points.rows.iter().position(|p| p[2] != 0.0) {
+            Some(row) => {
+                let message = format!("{}: row {}: points of the plane have two coordinates", path.display(), row + 1);
+                Err(Failure::input("points", message))
+            }
+            None => Ok(Self::Points(points)),
+        }
+    }
+
+    fn warp(
+        self,
+        session: &Session,
+        options: &WarpArgs,
+        pair: &DomainPair,
+        map: &HarmonicMap,
+        outputs: &mut Outputs,
+    ) -> Result<Done> {
+        match self {
+            Self::Picture(picture) => warp_picture(session, options, pair, map, picture, outputs),
+            Self::Points(points) => warp_points(session, options, map, points, outputs),
+        }
+    }
+}
+
+fn warp_picture(
+    session: &Session,
+    options: &WarpArgs,
+    pair: &DomainPair,
+    map: &HarmonicMap,
+    picture: Picture,
+    outputs: &mut Outputs,
+) -> Result<Done> {
+    let [width, height] = picture.size();
+    let default = if options.pair.is_some() { Coordinates::Fit } else { Coordinates::Pixels };
+    let placement = match options.coordinates.unwrap_or(default) {
+        Coordinates::Fit => Placement::fit(pair, width, height),
+        Coordinates::Pixels => Placement { origin: [0.0, 0.0], scale: 1.0, is_upwards: false },
+    };
+    let bits = picture.bits();
+    if let Some(path) = &options.field {
+        let field = backward_field(map, &placement, width, height);
+        let bytes = npy::encode_field(&field, width);
+        outputs.stage(session, path, |out| std::io::Write::write_all(out, &bytes).map_err(|e| e.to_string()))?;
+    }
+    if let Some(path) = &options.output {
+        let warped = picture.warped(map, &placement, filter(options.filter), session);
+        let warped = warped.ok_or_else(|| session.stopped())?;
+        session.stage("write");
+        warped.stage(session, path, outputs)?;
+    }
+    let fields = json!({"width": width, "height": height, "bits": bits});
+    Ok(Done { fields, words: format!("{width} x {height} pixels of {bits} bits"), outside: 0 })
+}
+
+fn warp_points(
+    session: &Session,
+    options: &WarpArgs,
+    map: &HarmonicMap,
+    points: Table<f64>,
+    outputs: &mut Outputs,
+) -> Result<Done> {
+    let count = points.rows.len();
+    let flat: Vec<[f64; 2]> = points.rows.iter().map(|&[x, y, _]| [x, y]).collect();
+    let images = map.forward_batch(&flat);
+    session.check()?;
+    let outside = images.iter().filter(|image| image.is_err()).count();
+    if let Some(row) = images.iter().position(|image| image.is_err()) {
+        let message = format!(
+            "{}: row {}: the point lies outside the polygon ({outside} such rows); remove them, or make the polygon larger",
+            options.input.display(),
+            row + 1
+        );
+        return Err(Failure::input("outside", message).with("row", row + 1).with("rows_without_image", outside));
+    }
+    let radius = images.iter().flatten().map(|image| image.radius).fold(0.0, f64::max);
+    if let Some(path) = &options.output {
+        session.stage("write");
+        let rows = images.into_iter().flatten().map(|image| [image.point[0], image.point[1], 0.0]).collect();
+        let table = Table { columns: 2, rows };
+        let bytes = match PointFormat::of_path(path)? {
+            PointFormat::Npy => npy::encode(&table),
+            PointFormat::Csv => csv::write_doubles(&table),
+        };
+        outputs.stage(session, path, |out| std::io::Write::write_all(out, &bytes).map_err(|e| e.to_string()))?;
+    }
+    let fields = json!({"points": count, "error": {"max_radius": radius}});
+    Ok(Done { fields, words: format!("{count} points, error at most {radius:.1e}"), outside })
+}
+
+fn answer(session: &Session, options: &WarpArgs, map: &HarmonicMap, claim: &Claim, done: Done) -> Answer {
+    let triangles = [map.source_half(), map.target_half()].map(|half| half.parts().triangles.len());
+    let mut lines = Lines::default();
+    lines.add("certificate", proof::holds(claim));
+    lines.add("triangles", format!("{} on the source, {} on the target", triangles[0], triangles[1]));
+    lines.add("moved", &done.words);
+    lines.add("time", stages(&session.seconds()));
+    let shown = |path: &Option<std::path::PathBuf>| path.as_ref().map(|path| path.display().to_string());
+    for path in [&options.output, &options.map, &options.field].into_iter().flatten() {
+        lines.add("written", path.display());
+    }
+    let fields = json!({
+        "target": if map.middle().is_cylinder() { "annulus" } else { "polygon" },
+        "certificate": proof::claim_json(claim),
+        "quality": {"triangles": {"source": triangles[0], "target": triangles[1]}, "moved": done.fields},
+        "outside": done.outside,
+        "output": shown(&options.output), "map": shown(&options.map), "field": shown(&options.field),
+    });
+    Answer::new(fields, lines.below(&format!("{} warped, one-to-one", options.input.display())))
+}
