@@ -4,10 +4,11 @@ use std::io::{Cursor, Read, Write};
 use std::panic::catch_unwind;
 
 use homeo::certificate::{FoliationMap, StoredMap, read_map};
-use homeo::map::{Bijection, Foliation, Target};
+use homeo::map::{Bijection, Foliation, PlanarBijection, Target};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
+use crate::planar;
 use crate::random::Random;
 use crate::shapes::{Shape, balls, disks};
 use crate::shells;
@@ -30,6 +31,8 @@ fn files() -> Vec<Vec<u8>> {
         file(&balls::octahedron_with_axis(), Target::Cube),
         shells::bytes_of(&shells::built(&shells::sphere(0), 0)),
         shells::bytes_of(&shells::built(&shells::singular(), 30)),
+        planar::small_file(false),
+        planar::small_file(true),
     ]
 }
 
@@ -70,6 +73,12 @@ fn ask(map: &StoredMap) {
                 let _ = (shell.to_middle(point), shell.to_source(point), shell.is_inside(point));
                 let at = shell.project_exact(&exact);
                 let _ = at.map(|at| (shell.unproject_exact(&at), shell.to_source_exact(&at)));
+            }
+            StoredMap::Harmonic(map) => {
+                let ([x, y, _], [u, v, _]) = (point, exact);
+                let _ = (map.forward([x, y]), map.inverse([x, y]));
+                let _ = (map.forward_exact(&[u.clone(), v.clone()]), map.inverse_exact(&[u, v]));
+                map.inverse_along(&[[x, y], [0.1, 0.1]], &mut [None; 2]);
             }
         }
     }

@@ -1,13 +1,14 @@
 //! The conformance suite: every kind of mesh, onto every target, under every law.
 //!
 //! `shapes` makes meshes, `points` makes rational points, `laws` says what must hold for them, and
-//! `controls` shows that the laws notice maps that are wrong.
+//! `planar` has the laws of maps between polygons; `controls` shows that the laws notice maps that are wrong.
 
 mod controls;
 mod hostile;
 mod laws;
 mod order;
 mod overlays;
+mod planar;
 mod points;
 mod random;
 mod refinement;

@@ -191,6 +191,10 @@ impl Half {
             return None;
         }
         let total = weights[0].plus(&weights[1]).plus(&weights[2]);
+        if total.sign() != Some(Sign::Positive) {
+            // Flat, in a damaged file.
+            return Some(None);
+        }
         let there = corners::<T>(&self.parts, middle, to, triangle);
         let coordinate = |axis: usize| {
             let sum = (0..3).map(|i| weights[i].times(&there[i][axis])).reduce(|x, y| x.plus(&y));
