@@ -470,8 +470,8 @@ pub struct ReportArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  homeo warp testdata/images/checker.png --from square.json --to arrow.json -o warped.png
-  homeo warp points.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo
+  homeo warp testdata/images/checker.png --from testdata/polygons/square.json --to testdata/polygons/arrow.json -o warped.png
+  homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo
 
 Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is
 {\"source\": ..., \"target\": ...}. Vertices correspond by number. What lies outside the target becomes

@@ -1,0 +1,137 @@
+//! `homeo warp`: pictures and points, certified, and what is refused.
+
+mod common;
+
+use common::Folder;
+use image::{GenericImageView, ImageBuffer, Luma, Rgba};
+
+const PIXELS: &str = "--from testdata/polygons/square.json --to testdata/polygons/arrow.json";
+
+fn folder() -> Folder {
+    Folder::new().with_testdata()
+}
+
+#[test]
+fn points_move_and_the_map_is_checked_again() {
+    let folder = folder();
+    let line =
+        "warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo";
+    let report = folder.line(&format!("{line} --json")).expect(0).json();
+    assert_eq!(report["certificate"]["holds"], true);
+    assert_eq!(report["quality"]["moved"]["points"], 4);
+    assert_eq!(report["input"]["vertices"], 10);
+    folder.line("verify star.homeo --source testdata/polygons/star_to_circle.json").expect(0);
+    let other = folder.line("verify star.homeo --source testdata/polygons/hole_turned.json --json").expect(3).json();
+    assert_eq!(other["error"]["code"], "other-source");
+    // The same points by `eval`, and back again.
+    folder.line("eval star.homeo --points testdata/points/star.csv -o again.csv").expect(0);
+    assert_eq!(folder.text("moved.csv"), folder.text("again.csv"));
+    folder.line("eval star.homeo --points testdata/points/star.csv --exact -o exact.csv").expect(0);
+    folder.line("eval star.homeo --points exact.csv --inverse --exact -o back.csv").expect(0);
+    assert_eq!(folder.text("back.csv"), "x,y\n1/10,1/5\n-1/4,1/8\n0,0\n3/10,-1/5\n");
+    folder.line("report star.homeo -o star.html").expect(0);
+    assert!(folder.text("star.html").contains("Certified"));
+}
+
+#[test]
+fn a_picture_keeps_its_corners_and_loses_what_is_outside() {
+    let folder = folder();
+    let run = format!("warp testdata/images/checker.png {PIXELS} -o warped.png --field field.npy --json");
+    let report = folder.line(&run).expect(0).json();
+    assert_eq!((&report["quality"]["moved"]["width"], &report["quality"]["moved"]["bits"]), (&128.into(), &8.into()));
+    let (before, after) =
+        (image::open(folder.path("testdata/images/checker.png")), image::open(folder.path("warped.png")));
+    let (before, after) = (before.unwrap().to_rgba8(), after.unwrap().to_rgba8());
+    assert_eq!(after.dimensions(), (128, 128));
+    // Right below the notch of the arrow, and left of the square, nothing is to be seen.
+    for (x, y) in [(110, 110), (2, 60), (60, 60)] {
+        assert_eq!(after.get_pixel(x, y)[3], 0, "({x}, {y})");
+    }
+    // Next to a corner that stays the picture is almost the same.
+    let (a, b) = (before.get_pixel(9, 9), after.get_pixel(9, 9));
+    assert!((0..3).all(|k| a[k].abs_diff(b[k]) < 40) && b[3] == 255, "{a:?} became {b:?}");
+    let field = folder.read("field.npy");
+    assert!(String::from_utf8_lossy(&field[..128]).contains("'shape': (128, 128, 2)"));
+    assert_eq!(field.len() % 64, 0);
+}
+
+#[test]
+fn a_polygon_that_does_not_move_leaves_the_picture_as_it_is() {
+    let folder = folder();
+    let line =
+        "warp testdata/images/checker.png --from testdata/polygons/square.json --to testdata/polygons/square.json";
+    for filter in ["linear", "bicubic", "lanczos"] {
+        folder.line(&format!("{line} --filter {filter} -o same.png")).expect(0);
+        let (before, after) =
+            (image::open(folder.path("testdata/images/checker.png")), image::open(folder.path("same.png")));
+        let (before, after) = (before.unwrap(), after.unwrap());
+        for (x, y) in (9..119).flat_map(|x| (9..119).map(move |y| (x, y))) {
+            let (a, b) = (before.get_pixel(x, y), after.get_pixel(x, y));
+            assert!((0..4).all(|k| a[k].abs_diff(b[k]) <= 1), "{filter}: ({x}, {y}): {a:?} became {b:?}");
+        }
+    }
+}
+
+#[test]
+fn sixteen_bits_and_grey_stay() {
+    let folder = folder();
+    let grey = ImageBuffer::from_fn(128, 128, |x, y| Luma([(300 * x + 40 * y) as u16]));
+    grey.save(folder.path("grey.png")).unwrap();
+    folder.line(&format!("warp grey.png {PIXELS} -o warped.png")).expect(0);
+    let warped = image::open(folder.path("warped.png")).unwrap();
+    assert_eq!(warped.color(), image::ColorType::La16);
+    let colours: ImageBuffer<Rgba<u16>, _> = ImageBuffer::from_fn(128, 128, |x, _| Rgba([500 * x as u16, 1, 2, 60000]));
+    colours.save(folder.path("colours.png")).unwrap();
+    folder.line(&format!("warp colours.png {PIXELS} -o warped.png")).expect(0);
+    let warped = image::open(folder.path("warped.png")).unwrap();
+    assert_eq!(warped.color(), image::ColorType::Rgba16);
+    assert_eq!(warped.to_rgba16().get_pixel(20, 20)[3], 60000);
+    folder.line(&format!("warp colours.png {PIXELS} -o warped.jpg")).expect(0);
+    assert_eq!(image::open(folder.path("warped.jpg")).unwrap().color(), image::ColorType::Rgb8);
+}
+
+#[test]
+fn holes_turn_and_results_do_not_depend_on_threads() {
+    let folder = folder();
+    let line = "warp testdata/images/checker.png --pair testdata/polygons/hole_turned.json --turn 400";
+    folder.line(&format!("{line} -o a.png --map a.homeo --threads 1")).expect(0);
+    folder.line(&format!("{line} -o b.png --map b.homeo --threads 2")).expect(0);
+    assert_eq!(folder.read("a.png"), folder.read("b.png"));
+    assert_eq!(folder.read("a.homeo"), folder.read("b.homeo"));
+    let report = folder.line("verify a.homeo --json").expect(0).json();
+    assert_eq!(report["certificate"]["target"], "annulus");
+}
+
+#[test]
+fn what_is_no_pair_is_refused_and_nothing_is_written() {
+    let folder = folder();
+    folder
+        .write("bow.json", "[[0,0],[9,9],[9,0],[0,9]]")
+        .write("four.json", "[[0,0],[9,0],[9,9],[0,9]]")
+        .write("clockwise.json", "[[0,0],[0,9],[9,9],[9,0]]")
+        .write("five.json", "[[0,0],[9,0],[9,9],[5,12],[0,9]]")
+        .write("text.json", "[[0,0],[9,\"x\"],[9,9]]")
+        .write("points.csv", "x,y\n1,1\n10,10\n")
+        .write("fake.png", "no picture");
+    let cases = [
+        ("points.csv", "four", "bow", "no-domain", "edge 0 of ring 0 and edge 2 of ring 0 meet"),
+        ("points.csv", "four", "five", "counts-differ", "4 vertices"),
+        ("points.csv", "four", "clockwise", "no-domain", "runs clockwise"),
+        ("points.csv", "text", "four", "bad-syntax", "vertex 1"),
+        ("points.csv", "four", "missing", "cannot-open", "missing.json"),
+        ("points.csv", "four", "four", "outside", "row 2"),
+        ("fake.png", "four", "four", "unreadable-picture", "fake.png"),
+    ];
+    for (input, from, to, code, words) in cases {
+        let output = if input.ends_with("png") { "out.png" } else { "out.csv" };
+        let line = format!("warp {input} --from {from}.json --to {to}.json -o {output} --map m.homeo --json");
+        let report = folder.line(&line).expect(3).json();
+        assert_eq!(report["error"]["code"], code, "{line}");
+        assert!(report["error"]["message"].as_str().unwrap().contains(words), "{line}: {report}");
+    }
+    let names = folder.names();
+    assert!(!names.iter().any(|name| name.starts_with("out") || name.contains("homeo")), "{names:?}");
+    folder.line("warp points.csv --from four.json -o out.csv").expect(2);
+    folder.line("warp points.csv --from four.json --to four.json").expect(2);
+    folder.line("warp points.csv --from four.json --to four.json -o out.png").expect(2);
+}
