@@ -4,8 +4,8 @@
 //! `A_{i-1} + A_i - B_i` is the area `C_i` of the corner,
 //! `N_i = r_i^p C_i + (r_{i+1}^p - r_i^p) A_{i-1} + (r_{i-1}^p - r_i^p) A_i`,
 //! whose differences are computed from `r_{i+1}^2 - r_i^2 = (s_i + s_{i+1}) . e_i`: without cancellation for short edges.
-//! Of the two sums the one of smaller terms is taken. Instead of the products of all areas of (6.1) to (6.4), which under- and overflow, the
-//! weights are multiplied by the two smallest neighbouring areas: no other can vanish.
+//! Halfway there are two more such sums; the one of the smallest terms is taken. Instead of the products of all areas of (6.1) to (6.4), which under- and overflow, the
+//! weights are multiplied by the areas of the closest edge and the closer one of its neighbours: no other can vanish.
 
 use homeo_core::planar::PlanarDomain;
 
@@ -16,7 +16,7 @@ use super::real::Real;
 use super::weighted::{self, Weighted};
 use super::{CoordinateError, PlanarCoordinates};
 
-/// How far outside a point may lie, in areas of the scaled polygon: as far as rounding carries.
+/// How far outside a point may lie, in diagonals: as far as rounding carries.
 const OUTSIDE: f64 = 1e-12;
 
 /// The three-point coordinates of an exponent `p` (Floater, Hormann, Kós 2006) of a strictly convex polygon.
@@ -42,6 +42,8 @@ pub struct ThreePoint {
     exponent: f64,
     /// Twice the areas of the corners.
     corners: Vec<f64>,
+    /// Lengths of the edges.
+    lengths: Vec<f64>,
 }
 
 impl ThreePoint {
@@ -64,26 +66,35 @@ impl ThreePoint {
         let v = |i: usize| outline.vertices[i];
         let corner = |i: usize| cross(v(outline.next[i]), v(outline.previous[i]), v(i));
         let corners = (0..outline.count()).map(corner).collect();
-        Ok(Self { outline, exponent, corners })
+        let length = |i: usize| outline.between(i, outline.next[i])[0].hypot(outline.between(i, outline.next[i])[1]);
+        let lengths = (0..outline.count()).map(length).collect();
+        Ok(Self { outline, exponent, corners, lengths })
     }
 
-    /// The `N_i` of a vertex, by the one of its two sums that cancels less: the first near vertices, the second for short
-    /// edges and flat corners.
+    /// The `N_i` of a vertex, by the one of four sums that cancels least: the first near vertices, the next where an
+    /// edge of the vertex is short, the last where both are or the corner is flat.
     fn numerator<T: Real<2>>(&self, i: usize, sight: &Sight<T>) -> T {
-        let (before, after) = (self.outline.previous[i], self.outline.next[i]);
-        let of_power = |i: usize| power(sight.distance[i], self.exponent);
+        let (h, j) = (self.outline.previous[i], self.outline.next[i]);
         if self.exponent == 0.0 {
             return T::constant(self.corners[i]);
         }
-        let across = self.outline.cross::<T>(before, after, sight.point);
-        let plain = [of_power(after) * sight.cross[before], of_power(before) * sight.cross[i], -(of_power(i) * across)];
-        let grown = [
-            self.growth(i, after, sight) * sight.cross[before],
-            self.growth(i, before, sight) * sight.cross[i],
-            of_power(i) * self.corners[i],
+        let [before, own, after] = [h, i, j].map(|v| power(sight.distance[v], self.exponent));
+        let (left, right) = (sight.cross[h], sight.cross[i]);
+        let across = self.outline.cross::<T>(h, j, sight.point);
+        // `A_{i-1} - B_i` and `A_i - B_i`.
+        let turn = |edge: [f64; 2], s: [T; 2]| s[1] * edge[0] - s[0] * edge[1];
+        let past_after = turn(self.outline.between(i, j), sight.offset[h]);
+        let past_before = turn(self.outline.between(h, i), sight.offset[j]);
+        let to_after = self.growth(i, j, sight) * left;
+        let to_before = self.growth(i, h, sight) * right;
+        let sums = [
+            [after * left, before * right, -(own * across)],
+            [to_after, before * right, own * past_after],
+            [after * left, to_before, own * past_before],
+            [to_after, to_before, own * self.corners[i]],
         ];
         let size = |terms: &[T; 3]| terms.iter().map(|term| term.value().abs()).sum::<f64>();
-        let [first, second, third] = if size(&plain) < size(&grown) { plain } else { grown };
+        let [first, second, third] = sums[least(sums.iter().map(size))];
         first + second + third
     }
 
@@ -125,13 +136,15 @@ impl Weighted for ThreePoint {
     fn weights<T: Real<2>>(&self, sight: &Sight<T>) -> Result<Vec<T>, CoordinateError> {
         let outline = &self.outline;
         let area = |i: usize| sight.cross[i];
-        let closest = least(sight.cross.iter().map(|a| a.value()));
-        if area(closest).value() < -OUTSIDE {
+        // Not the areas themselves count: that of a short edge is small everywhere, and grows as slowly.
+        let height = |i: usize| area(i).value() / self.lengths[i];
+        let closest = least((0..outline.count()).map(height));
+        if height(closest) < -OUTSIDE {
             return Err(CoordinateError::Undefined { point: sight.point.map(|x| x / outline.scale) });
         }
         let (before, after) = (outline.previous[closest], outline.next[closest]);
-        // The corner between the two smallest neighbouring areas, those of its edges `k` and `j`.
-        let corner = if area(before).value() < area(after).value() { closest } else { after };
+        // The corner at the two closest neighbouring edges, `j` and `k`.
+        let corner = if height(before) < height(after) { closest } else { after };
         let (j, k) = (outline.previous[corner], corner);
         let weight = |i: usize| {
             let (before, numerator) = (outline.previous[i], self.numerator(i, sight));
