@@ -9,17 +9,22 @@ const SAFE_SHARE: f64 = 1.0 / 64.0;
 /// `(a - x) x (b - x)`: twice the area of the triangle `x, a, b`, to a relative error of some `1e-14`, as long as it is
 /// above `1e-30` of `|a - x| |b - x|`.
 pub(super) fn cross(a: [f64; 2], b: [f64; 2], x: [f64; 2]) -> f64 {
-    let (ax, ay, bx, by) = (a[0] - x[0], a[1] - x[1], b[0] - x[0], b[1] - x[1]);
-    let (p, q) = (ax * by, ay * bx);
-    let quick = p - q;
-    if quick.abs() > SAFE_SHARE * (p.abs() + q.abs()) {
+    cross_of_differences([a, x], [b, x])
+}
+
+/// `(a - b) x (c - d)`, as accurately.
+pub(super) fn cross_of_differences([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> f64 {
+    let (px, py, qx, qy) = (a[0] - b[0], a[1] - b[1], c[0] - d[0], c[1] - d[1]);
+    let (first, second) = (px * qy, py * qx);
+    let quick = first - second;
+    if quick.abs() > SAFE_SHARE * (first.abs() + second.abs()) {
         return quick;
     }
-    let [ax, ay, bx, by] =
-        [difference(a[0], x[0]), difference(a[1], x[1]), difference(b[0], x[0]), difference(b[1], x[1])];
-    let (p, q) = (product(ax.0, by.0), product(ay.0, bx.0));
-    let high = difference(p.0, q.0);
-    let low = (ax.0 * by.1 - ay.0 * bx.1) + (ax.1 * by.0 - ay.1 * bx.0) + (p.1 - q.1);
+    let (px, py) = (difference(a[0], b[0]), difference(a[1], b[1]));
+    let (qx, qy) = (difference(c[0], d[0]), difference(c[1], d[1]));
+    let (first, second) = (product(px.0, qy.0), product(py.0, qx.0));
+    let high = difference(first.0, second.0);
+    let low = (px.0 * qy.1 - py.0 * qx.1) + (px.1 * qy.0 - py.1 * qx.0) + (first.1 - second.1);
     high.0 + (high.1 + low)
 }
 

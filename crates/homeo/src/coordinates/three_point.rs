@@ -9,7 +9,7 @@
 
 use homeo_core::planar::PlanarDomain;
 
-use super::accurate::cross;
+use super::accurate::{cross, cross_of_differences};
 use super::mean_value::least;
 use super::outline::{Outline, Sight, dot};
 use super::real::Real;
@@ -82,9 +82,12 @@ impl ThreePoint {
         let (left, right) = (sight.cross[h], sight.cross[i]);
         let across = self.outline.cross::<T>(h, j, sight.point);
         // `A_{i-1} - B_i` and `A_i - B_i`.
-        let turn = |edge: [f64; 2], s: [T; 2]| s[1] * edge[0] - s[0] * edge[1];
-        let past_after = turn(self.outline.between(i, j), sight.offset[h]);
-        let past_before = turn(self.outline.between(h, i), sight.offset[j]);
+        let v = |i: usize| self.outline.vertices[i];
+        let turn = |[from, to]: [usize; 2], k: usize| {
+            let [x, y] = self.outline.between(from, to);
+            T::variable(cross_of_differences([v(to), v(from)], [v(k), sight.point]), [y, -x])
+        };
+        let (past_after, past_before) = (turn([i, j], h), turn([h, i], j));
         let to_after = self.growth(i, j, sight) * left;
         let to_before = self.growth(i, h, sight) * right;
         let sums = [
@@ -93,8 +96,9 @@ impl ThreePoint {
             [after * left, to_before, own * past_before],
             [to_after, to_before, own * self.corners[i]],
         ];
-        let size = |terms: &[T; 3]| terms.iter().map(|term| term.value().abs()).sum::<f64>();
-        let [first, second, third] = sums[least(sums.iter().map(size))];
+        // Of nearly equal sums the later: where values tie, its gradients are smaller.
+        let size = |(terms, handicap): (&[T; 3], f64)| handicap * terms.iter().map(|t| t.value().abs()).sum::<f64>();
+        let [first, second, third] = sums[least(sums.iter().zip([1.0, 0.5, 0.5, 0.25]).map(size))];
         first + second + third
     }
 
