@@ -4,8 +4,10 @@
 //! |---|---|---|
 //! | [`MeanValue`] | the plane | yes |
 //! | [`Wachspress`], [`DiscreteHarmonic`], [`ThreePoint`] | strictly convex polygons | no |
+//! | [`PositiveMeanValue`], [`MaximumEntropy`] | the closed domain | yes |
+//! | [`Cauchy`], [`Green`] (complex, with normals; their own interface) | inside | yes |
 //!
-//! All of one polygon implement [`PlanarCoordinates`]: `#V` functions that sum to 1, reproduce the point from the
+//! All of one polygon but the last implement [`PlanarCoordinates`]: `#V` functions that sum to 1, reproduce the point from the
 //! vertices, are linear on edges and 1 at their own vertex. None of them gives a map that is injective for every pair
 //! of polygons. `docs/methods/coordinates.md` says which to choose.
 //!
@@ -21,10 +23,13 @@
 //! ```
 
 mod accurate;
+mod complex;
+mod maximum_entropy;
 mod mean_value;
 mod mean_value_batch;
 mod mean_value_vertex;
 mod outline;
+mod positive;
 mod real;
 mod three_point;
 mod weighted;
@@ -32,8 +37,11 @@ mod weighted;
 #[cfg(test)]
 mod tests;
 
+pub use complex::{Cauchy, Complex, Green};
+pub use maximum_entropy::MaximumEntropy;
 pub use mean_value::MeanValue;
 pub use mean_value_vertex::mean_value_derivative_at_vertex;
+pub use positive::PositiveMeanValue;
 pub use three_point::{DiscreteHarmonic, ThreePoint, Wachspress};
 
 /// Coordinates of points with respect to the vertices of a planar domain, ring after ring.

@@ -98,7 +98,7 @@ impl Outline {
 }
 
 /// The length of a vector that is not zero; safe where the square is not.
-fn length<T: Real<2>>([x, y]: [T; 2]) -> T {
+pub(super) fn length<T: Real<2>>([x, y]: [T; 2]) -> T {
     let square = x * x + y * y;
     if square.value() > 1e-280 {
         return square.sqrt();

@@ -16,6 +16,8 @@ pub(super) trait Real<const D: usize>:
     fn variable(value: f64, gradient: [f64; D]) -> Self;
     /// The number.
     fn value(self) -> f64;
+    /// The gradient; zero where none is carried.
+    fn gradient(self) -> [f64; D];
     /// A function of the number, by its value and its derivative there.
     fn chain(self, value: f64, slope: f64) -> Self;
 
@@ -60,6 +62,9 @@ impl<const D: usize> Real<D> for f64 {
     fn value(self) -> f64 {
         self
     }
+    fn gradient(self) -> [f64; D] {
+        [0.0; D]
+    }
     fn chain(self, value: f64, _: f64) -> Self {
         value
     }
@@ -84,6 +89,9 @@ impl<const D: usize> Real<D> for Jet<D> {
     }
     fn value(self) -> f64 {
         self.value
+    }
+    fn gradient(self) -> [f64; D] {
+        self.gradient
     }
     fn chain(self, value: f64, slope: f64) -> Self {
         Self { value, gradient: self.gradient.map(|g| slope * g) }

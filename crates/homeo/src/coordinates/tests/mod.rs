@@ -73,6 +73,27 @@ fn three_point_family_obeys_the_laws_on_convex_polygons() {
     }
 }
 
+#[test]
+fn positive_mean_value_obeys_the_laws_on_every_domain() {
+    for (shape, domain) in shapes::convex() {
+        let kind = PositiveMeanValue::new(&domain);
+        let worst = try_on("positive", shape, &kind, &domain, Some(naive::mean_value));
+        assert!(worst.negative <= 0.0);
+    }
+    for (shape, domain) in shapes::general() {
+        let worst = try_on("positive", shape, &PositiveMeanValue::new(&domain), &domain, None);
+        assert!(worst.negative <= 0.0, "{shape}: {worst:?}");
+    }
+}
+
+#[test]
+fn maximum_entropy_obeys_the_laws_on_every_domain() {
+    for (shape, domain) in shapes::convex().into_iter().chain(shapes::general()) {
+        let worst = try_on("entropy", shape, &MaximumEntropy::new(&domain), &domain, None);
+        assert!(worst.negative <= 0.0, "{shape}: {worst:?}");
+    }
+}
+
 /// Within `1e-12`: mean value coordinates in a row of points do not depend on how they are asked for.
 #[test]
 fn batches_agree_with_single_points() {
