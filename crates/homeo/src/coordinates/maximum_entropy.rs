@@ -150,12 +150,12 @@ impl Problem {
         let mut values: Vec<f64> = exponents.iter().map(|e| (e - most).exp()).collect();
         let total: f64 = values.iter().sum();
         values.iter_mut().for_each(|v| *v /= total);
-        let (mut mean, mut second) = ([0.0; 2], [0.0; 3]);
-        for (v, y) in values.iter().zip(&self.places) {
-            mean = [mean[0] + v * y[0], mean[1] + v * y[1]];
-            second = [second[0] + v * y[0] * y[0], second[1] + v * y[0] * y[1], second[2] + v * y[1] * y[1]];
-        }
-        let covariance = [second[0] - mean[0] * mean[0], second[1] - mean[0] * mean[1], second[2] - mean[1] * mean[1]];
+        let sum =
+            |term: &dyn Fn(&[f64; 2]) -> f64| values.iter().zip(&self.places).map(|(v, y)| v * term(y)).sum::<f64>();
+        let mean = [sum(&|y| y[0]), sum(&|y| y[1])];
+        // About the mean, not by the difference of squares: it may be far smaller.
+        let product = |k: usize, l: usize| sum(&|y| (y[k] - mean[k]) * (y[l] - mean[l]));
+        let covariance = [product(0, 0), product(0, 1), product(1, 1)];
         State { values, potential: most + total.ln(), mean, covariance }
     }
 
