@@ -163,6 +163,7 @@ impl Problem {
     fn minimum(&self) -> Option<State> {
         let mut lambda = [0.0, self.across()?];
         let mut state = self.state(lambda);
+        let mut last = f64::INFINITY;
         for _ in 0..MOST_STEPS {
             let step = solve(state.covariance, state.mean)?;
             let largest = self.places.iter().map(|y| (y[0] * step[0] + y[1] * step[1]).abs()).fold(0.0, f64::max);
@@ -178,9 +179,11 @@ impl Problem {
                 }
                 share *= 0.5;
             }
-            if largest < 1e-9 {
+            // Beside short edges `lambda` is so large that exponents are noise above `1e-9`: then no step gets shorter.
+            if largest < 1e-9 || (largest < 1e-4 && largest > 0.5 * last) {
                 return Some(state);
             }
+            last = largest;
             if !largest.is_finite() {
                 return None;
             }

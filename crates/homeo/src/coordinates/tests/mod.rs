@@ -1,7 +1,10 @@
 //! One suite of laws for every kind, with controls that must fail.
 
+mod controls;
 mod double;
+mod maps;
 mod naive;
+mod others;
 mod shapes;
 mod suite;
 
