@@ -6,8 +6,9 @@
 //! | [`Wachspress`], [`DiscreteHarmonic`], [`ThreePoint`] | strictly convex polygons | no |
 //! | [`PositiveMeanValue`], [`MaximumEntropy`] | the closed domain | yes |
 //! | [`Cauchy`], [`Green`] (complex, with normals; their own interface) | inside | yes |
+//! | [`WachspressPolyhedron`] (in space; its own interface) | convex polyhedra | no |
 //!
-//! All of one polygon but the last implement [`PlanarCoordinates`]: `#V` functions that sum to 1, reproduce the point from the
+//! All of one polygon but the last two implement [`PlanarCoordinates`]: `#V` functions that sum to 1, reproduce the point from the
 //! vertices, are linear on edges and 1 at their own vertex. None of them gives a map that is injective for every pair
 //! of polygons. `docs/methods/coordinates.md` says which to choose.
 //!
@@ -31,6 +32,7 @@ mod mean_value_vertex;
 mod outline;
 mod positive;
 mod real;
+mod space;
 mod three_point;
 mod weighted;
 
@@ -42,6 +44,7 @@ pub use maximum_entropy::MaximumEntropy;
 pub use mean_value::MeanValue;
 pub use mean_value_vertex::mean_value_derivative_at_vertex;
 pub use positive::PositiveMeanValue;
+pub use space::{PolyhedronError, WachspressPolyhedron};
 pub use three_point::{DiscreteHarmonic, ThreePoint, Wachspress};
 
 /// Coordinates of points with respect to the vertices of a planar domain, ring after ring.
@@ -81,6 +84,12 @@ pub enum CoordinateError {
     Undefined {
         /// What was asked for.
         point: [f64; 2],
+    },
+    /// The point lies outside the polyhedron, or is not finite.
+    #[error("{point:?} is not in the polyhedron")]
+    OutsidePolyhedron {
+        /// What was asked for.
+        point: [f64; 3],
     },
     /// The kind is for strictly convex polygons.
     #[error("the polygon is not strictly convex at vertex {vertex}: take mean value coordinates")]

@@ -6,6 +6,7 @@ mod maps;
 mod naive;
 mod others;
 mod shapes;
+mod space;
 mod suite;
 
 use homeo_core::planar::PlanarDomain;
