@@ -121,6 +121,8 @@ impl<const D: usize> Mul for Jet<D> {
 
 impl<const D: usize> Div for Jet<D> {
     type Output = Self;
+    // The rule for quotients has products in it.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn div(self, other: Self) -> Self {
         // Subtract before dividing: a quotient of equal numbers has gradient zero to the last bit.
         let value = self.value / other.value;

@@ -1,4 +1,5 @@
 //! Numbers of 32 digits with gradients, for references: nothing of the library is used.
+#![allow(clippy::suspicious_arithmetic_impl)]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
