@@ -7,6 +7,7 @@
 
 pub mod certificate;
 pub mod construct;
+pub mod coordinates;
 pub mod export;
 pub mod input;
 pub mod linear;
