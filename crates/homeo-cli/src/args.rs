@@ -475,7 +475,8 @@ pub struct ReportArgs {
 
 Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is
 {\"source\": ..., \"target\": ...}. Vertices correspond by number. What lies outside the target becomes
-transparent. The map's certificate is checked before anything is written; `homeo verify` checks it again.")]
+transparent. With --landmarks the map is affine on the triangles between them; landmarks whose triangles
+turn over would fold the picture and are refused by name. The map's certificate is checked before anything is written; `homeo verify` checks it again.")]
 pub struct WarpArgs {
     /// A picture (PNG, JPEG; 8 or 16 bits, with opacity or without) or points of the plane (.csv, .npy)
     #[arg(value_name = "INPUT")]
@@ -487,8 +488,11 @@ pub struct WarpArgs {
     #[arg(long, value_name = "B.json", requires = "from")]
     pub to: Option<PathBuf>,
     /// Both in one file
-    #[arg(long, value_name = "PAIR.json", required_unless_present = "from")]
+    #[arg(long, value_name = "PAIR.json", required_unless_present_any = ["from", "landmarks"])]
     pub pair: Option<PathBuf>,
+    /// Points and where they go, in place of polygons: a table with the columns x,y,u,v
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["pair", "from"])]
+    pub landmarks: Option<PathBuf>,
     /// The warped picture or points, in a format by its extension
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

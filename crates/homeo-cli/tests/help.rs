@@ -6,7 +6,8 @@ use common::Folder;
 
 #[test]
 fn examples_run_as_printed() {
-    for verb in ["", "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "eval", "verify", "report"] {
+    for verb in ["", "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "eval", "verify", "report"]
+    {
         let folder = Folder::new().with_testdata();
         let help = folder.line(&format!("{verb} --help")).expect(0).stdout;
         let examples: Vec<&str> = help

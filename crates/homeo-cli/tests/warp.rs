@@ -135,3 +135,31 @@ fn what_is_no_pair_is_refused_and_nothing_is_written() {
     folder.line("warp points.csv --from four.json --to four.json").expect(2);
     folder.line("warp points.csv --from four.json --to four.json -o out.png").expect(2);
 }
+
+#[test]
+fn landmarks_move_the_picture_unless_they_fold_it() {
+    let folder = folder();
+    let table = |shift: f64| {
+        let mut text = String::from("x,y,u,v\n");
+        for (i, j) in (0..5).flat_map(|i| (0..5).map(move |j| (i, j))) {
+            let (x, y) = (f64::from(i) * 30.0 + 2.0, f64::from(j) * 30.0 + 2.0);
+            let moved = if (i, j) == (2, 2) { shift } else { 0.0 };
+            text.push_str(&format!("{x},{y},{},{}\n", x + moved, y + 0.5 * moved));
+        }
+        text
+    };
+    folder.write("few.csv", table(12.0)).write("fold.csv", table(50.0));
+    let line = "warp testdata/images/checker.png -o out.png --map m.homeo --json";
+    let report = folder.line(&format!("{line} --landmarks few.csv")).expect(0).json();
+    assert_eq!(report["certificate"]["holds"], true);
+    folder.line("verify m.homeo").expect(0);
+    let image = image::open(folder.path("out.png")).unwrap().to_rgba8();
+    assert!(image.get_pixel(60, 60)[3] == 255 && image.get_pixel(0, 0)[3] == 0);
+    std::fs::remove_file(folder.path("out.png")).unwrap();
+    let report = folder.line(&format!("{line} --landmarks fold.csv")).expect(3).json();
+    assert_eq!(report["error"]["code"], "folded");
+    // Landmark 12 is the one in the middle; every triangle that is turned over has it.
+    let folded = report["folded"].as_array().unwrap();
+    assert!(!folded.is_empty() && folded.iter().all(|t| t.as_array().unwrap().contains(&12.into())), "{report}");
+    assert!(!folder.path("out.png").exists());
+}

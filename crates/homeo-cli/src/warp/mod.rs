@@ -1,5 +1,6 @@
 //! `homeo warp`: pictures and points move with a polygon, one-to-one.
 
+mod landmarks;
 mod picture;
 pub mod polygons;
 
@@ -10,7 +11,6 @@ use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, har
 use homeo::map::{HarmonicMap, PlanarBijection};
 use homeo::progress::Progress;
 use homeo::warp::{Filter, Placement, backward_field};
-use homeo_core::planar::DomainPair;
 use homeo_verify::Claim;
 use serde_json::{Value, json};
 
@@ -29,20 +29,29 @@ use picture::Picture;
 pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Result<Answer> {
     check_outputs(options)?;
     session.stage("read");
-    let (pair, turn) = polygons::read(options)?;
-    let first = polygons::paths(options)[0];
-    session.fact("input", proof::domain_json(&pair.source, first));
     let input = Input::read(&options.input)?;
-    let params = HarmonicParams { triangles: options.triangles, middle: shape(options.middle), turn_degrees: turn };
-    let map = harmonic_map(&pair, params, session).map_err(|error| explain(session, &error))?;
+    let first = polygons::paths(options)[0];
+    let (map, turn) = match &options.landmarks {
+        Some(path) => (landmarks::map(path)?, None),
+        None => polygon_map(session, options)?,
+    };
+    session.fact("input", proof::domain_json(map.source(), first));
     let provenance = provenance(options, first, turn);
     let claim = proof::write_and_check(session, options.map.as_deref(), outputs, |mut out| {
         write_harmonic(&map, &provenance, &mut out)
     })?;
     session.stage("warp");
-    let done = input.warp(session, options, &pair, &map, outputs)?;
+    let done = input.warp(session, options, &map, outputs)?;
     session.end_stage();
     Ok(answer(session, options, &map, &claim, done))
+}
+
+/// The map between polygons, and the turn that was asked for.
+fn polygon_map(session: &Session, options: &WarpArgs) -> Result<(HarmonicMap, Option<f64>)> {
+    let (pair, turn) = polygons::read(options)?;
+    let params = HarmonicParams { triangles: options.triangles, middle: shape(options.middle), turn_degrees: turn };
+    let map = harmonic_map(&pair, params, session).map_err(|error| explain(session, &error))?;
+    Ok((map, turn))
 }
 
 /// What is moved.
@@ -130,16 +139,9 @@ impl Input {
         }
     }
 
-    fn warp(
-        self,
-        session: &Session,
-        options: &WarpArgs,
-        pair: &DomainPair,
-        map: &HarmonicMap,
-        outputs: &mut Outputs,
-    ) -> Result<Done> {
+    fn warp(self, session: &Session, options: &WarpArgs, map: &HarmonicMap, outputs: &mut Outputs) -> Result<Done> {
         match self {
-            Self::Picture(picture) => warp_picture(session, options, pair, map, picture, outputs),
+            Self::Picture(picture) => warp_picture(session, options, map, picture, outputs),
             Self::Points(points) => warp_points(session, options, map, points, outputs),
         }
     }
@@ -148,7 +150,6 @@ impl Input {
 fn warp_picture(
     session: &Session,
     options: &WarpArgs,
-    pair: &DomainPair,
     map: &HarmonicMap,
     picture: Picture,
     outputs: &mut Outputs,
@@ -156,7 +157,7 @@ fn warp_picture(
     let [width, height] = picture.size();
     let default = if options.pair.is_some() { Coordinates::Fit } else { Coordinates::Pixels };
     let placement = match options.coordinates.unwrap_or(default) {
-        Coordinates::Fit => Placement::fit(pair, width, height),
+        Coordinates::Fit => Placement::fit(map.source(), map.target(), width, height),
         Coordinates::Pixels => Placement { origin: [0.0, 0.0], scale: 1.0, is_upwards: false },
     };
     let bits = picture.bits();

@@ -35,7 +35,10 @@ pub fn source(path: &Path) -> Result<PlanarDomain> {
 
 /// The files that are read.
 pub fn paths(options: &WarpArgs) -> Vec<&Path> {
-    [&options.pair, &options.from, &options.to].into_iter().filter_map(|path| path.as_deref()).collect()
+    [&options.landmarks, &options.pair, &options.from, &options.to]
+        .into_iter()
+        .filter_map(|path| path.as_deref())
+        .collect()
 }
 
 fn pair(path: &Path) -> Result<RingPair> {

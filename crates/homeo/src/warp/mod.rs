@@ -9,7 +9,7 @@ mod raster;
 pub use filter::Filter;
 pub use raster::{Raster, Sample};
 
-use homeo_core::planar::{DomainPair, Point2};
+use homeo_core::planar::{PlanarDomain, Point2};
 use rayon::prelude::*;
 
 use crate::map::PlanarBijection;
@@ -28,18 +28,18 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Puts both domains of a pair into the middle of a picture, as large as they fit, upwards.
+    /// Puts two domains into the middle of a picture, as large as they fit, upwards.
     ///
     /// ```
     /// use homeo::warp::Placement;
-    /// use homeo_core::planar::DomainPair;
+    /// use homeo_core::planar::PlanarDomain;
     /// let triangle = vec![vec![[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]];
-    /// let pair = DomainPair::new(triangle.clone(), triangle).unwrap();
-    /// let placement = Placement::fit(&pair, 200, 200);
+    /// let domain = PlanarDomain::new(triangle).unwrap();
+    /// let placement = Placement::fit(&domain, &domain, 200, 200);
     /// assert_eq!((placement.scale, placement.origin), (100.0, [0.0, 150.0]));
     /// ```
-    pub fn fit(pair: &DomainPair, width: usize, height: usize) -> Self {
-        let ([a, b], [c, d]) = (pair.source.bounds(), pair.target.bounds());
+    pub fn fit(source: &PlanarDomain, target: &PlanarDomain, width: usize, height: usize) -> Self {
+        let ([a, b], [c, d]) = (source.bounds(), target.bounds());
         let low = [0, 1].map(|axis| a[axis].min(c[axis]));
         let high = [0, 1].map(|axis| b[axis].max(d[axis]));
         let size = [width as f64, height as f64];

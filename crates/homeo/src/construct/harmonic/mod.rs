@@ -5,9 +5,12 @@
 
 mod boundary;
 mod flatten;
+mod landmarks;
 mod mesh;
 mod middle;
 mod turns;
+
+pub use landmarks::{Landmark, LandmarkError, landmark_map};
 
 use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 
