@@ -69,6 +69,8 @@ pub enum Verb {
     Pl(PlArgs),
     /// Warp a picture or points as a polygon moves, and never fold
     Warp(WarpArgs),
+    /// The frames between, as a polygon moves with the picture in it
+    Morph(MorphArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
     /// Check the certificate of a map, independently of how it was made
@@ -89,6 +91,7 @@ impl Verb {
             Self::Transfer(_) => "transfer",
             Self::Pl(_) => "pl",
             Self::Warp(_) => "warp",
+            Self::Morph(_) => "morph",
             Self::Eval(_) => "eval",
             Self::Verify(_) => "verify",
             Self::Report(_) => "report",
@@ -481,15 +484,6 @@ pub struct WarpArgs {
     /// A picture (PNG, JPEG; 8 or 16 bits, with opacity or without) or points of the plane (.csv, .npy)
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
-    /// The polygon before it moves
-    #[arg(long, value_name = "A.json", requires = "to", conflicts_with = "pair")]
-    pub from: Option<PathBuf>,
-    /// The polygon after it has moved
-    #[arg(long, value_name = "B.json", requires = "from")]
-    pub to: Option<PathBuf>,
-    /// Both in one file
-    #[arg(long, value_name = "PAIR.json", required_unless_present_any = ["from", "landmarks"])]
-    pub pair: Option<PathBuf>,
     /// Points and where they go, in place of polygons: a table with the columns x,y,u,v
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["pair", "from"])]
     pub landmarks: Option<PathBuf>,
@@ -499,6 +493,25 @@ pub struct WarpArgs {
     /// Keep the map with its certificate
     #[arg(long, value_name = "MAP.homeo")]
     pub map: Option<PathBuf>,
+    #[command(flatten)]
+    pub polygons: PolygonArgs,
+    /// Save where every pixel of the result comes from, as float32 of shape (height, width, 2): what `remap` takes
+    #[arg(long, value_name = "FIELD.npy")]
+    pub field: Option<PathBuf>,
+}
+
+/// Polygons that move, and how a picture moves with them.
+#[derive(Debug, Args)]
+pub struct PolygonArgs {
+    /// The polygon before it moves
+    #[arg(long, value_name = "A.json", requires = "to", conflicts_with = "pair")]
+    pub from: Option<PathBuf>,
+    /// The polygon after it has moved
+    #[arg(long, value_name = "B.json", requires = "from")]
+    pub to: Option<PathBuf>,
+    /// Both in one file
+    #[arg(long, value_name = "PAIR.json")]
+    pub pair: Option<PathBuf>,
     /// Where the polygons lie on a picture [default: pixels with --from, fit with --pair]
     #[arg(long, value_enum, value_name = "HOW")]
     pub coordinates: Option<Coordinates>,
@@ -514,9 +527,47 @@ pub struct WarpArgs {
     /// Polygons with a hole: by how much its rim turns [default: the pair's `winding_hint`, or as little as possible]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub turn: Option<f64>,
-    /// Save where every pixel of the result comes from, as float32 of shape (height, width, 2): what `remap` takes
-    #[arg(long, value_name = "FIELD.npy")]
-    pub field: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  homeo morph testdata/images/checker.png --pair testdata/polygons/star_to_circle.json --frames 8 -o morph.gif
+  homeo morph testdata/images/checker.png --pair testdata/polygons/hole_turned.json --frames 5 -o frame.png --separate
+
+Each frame is the picture moved from the first polygon to one between both, by a map whose certificate was
+checked. Where polygons in between cross themselves, there is no such frame: exit code 4.")]
+pub struct MorphArgs {
+    /// A picture (PNG, JPEG; 8 or 16 bits, with opacity or without)
+    #[arg(value_name = "PICTURE")]
+    pub input: PathBuf,
+    #[command(flatten)]
+    pub polygons: PolygonArgs,
+    /// .gif (256 colours), .png (animated, all colours), or .json for the polygons in between
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// How many frames, the first and the last included
+    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    pub frames: u32,
+    /// How long it takes, in seconds
+    #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = positive_seconds)]
+    pub duration: f64,
+    /// One file for each frame, numbered before the extension (.png or .jpg)
+    #[arg(long)]
+    pub separate: bool,
+    /// How the polygon moves
+    #[arg(long, value_enum, value_name = "PATH", default_value_t = PathName::Auto)]
+    pub path: PathName,
+}
+
+/// How a polygon becomes another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PathName {
+    /// By lengths and angles if that gives polygons that do not cross themselves, else straight
+    Auto,
+    /// Every vertex on a straight line
+    Straight,
+    /// Edge lengths and angles change evenly: turned parts turn and do not shrink
+    Angles,
 }
 
 /// Where polygons lie on a picture.

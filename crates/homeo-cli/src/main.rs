@@ -15,6 +15,7 @@ mod logging;
 mod map;
 mod memory;
 mod mesh_input;
+mod morph;
 mod outputs;
 mod points;
 mod proof;
@@ -40,8 +41,8 @@ use outputs::Outputs;
 use session::Session;
 
 /// As typed; wrong usage is reported before the command line is understood.
-const VERBS: [&str; 11] =
-    ["info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "eval", "verify", "report"];
+const VERBS: [&str; 12] =
+    ["info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "eval", "verify", "report"];
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -104,6 +105,7 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
         Verb::Transfer(options) => inside::transfer(session, options, &mut outputs),
         Verb::Pl(options) => inside::pl(session, options, &mut outputs),
         Verb::Warp(options) => warp::run(session, options, &mut outputs),
+        Verb::Morph(options) => morph::run(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),
         Verb::Report(options) => report::run(session, options, &mut outputs),

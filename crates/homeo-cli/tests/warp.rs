@@ -163,3 +163,41 @@ fn landmarks_move_the_picture_unless_they_fold_it() {
     assert!(!folded.is_empty() && folded.iter().all(|t| t.as_array().unwrap().contains(&12.into())), "{report}");
     assert!(!folder.path("out.png").exists());
 }
+
+#[test]
+fn a_morph_has_all_its_frames() {
+    let folder = folder();
+    let line =
+        "morph testdata/images/checker.png --pair testdata/polygons/star_to_circle.json --frames 4 --triangles 500";
+    let report = folder.line(&format!("{line} -o m.png --json")).expect(0).json();
+    assert_eq!((&report["quality"]["frames"], &report["certificate"]["holds"]), (&4.into(), &true.into()));
+    let bytes = folder.read("m.png");
+    assert_eq!(bytes.windows(4).filter(|w| w == b"fcTL").count(), 4, "an animated PNG of four frames");
+    folder.line(&format!("{line} -o m.gif")).expect(0);
+    assert!(folder.read("m.gif").starts_with(b"GIF89a"));
+    folder.line(&format!("{line} -o f.png --separate")).expect(0);
+    let (first, last) = (image::open(folder.path("f_0.png")).unwrap(), image::open(folder.path("f_3.png")).unwrap());
+    assert!(first != last && folder.path("f_2.png").exists() && !folder.path("f_4.png").exists());
+    // The last frame is what `warp` makes.
+    folder
+        .line("warp testdata/images/checker.png --pair testdata/polygons/star_to_circle.json --triangles 500 -o w.png")
+        .expect(0);
+    assert!(last == image::open(folder.path("w.png")).unwrap());
+    folder.line(&format!("{line} -o m.json")).expect(0);
+    let shapes: serde_json::Value = serde_json::from_str(&folder.text("m.json")).unwrap();
+    assert_eq!(shapes["frames"].as_array().unwrap().len(), 4);
+    folder.line(&format!("{line} -o m.csv")).expect(2);
+}
+
+#[test]
+fn a_path_that_crosses_itself_is_refused() {
+    let folder = folder();
+    // On straight lines vertices pass one another.
+    let pair = r#"{"source": [[2,0],[5,0],[9,7],[2,7],[6,3]], "target": [[3,9],[0,5],[3,7],[4,2],[8,7]]}"#;
+    folder.write("pair.json", pair);
+    let line = "morph testdata/images/checker.png --pair pair.json --frames 9 -o m.gif --path straight --json";
+    let report = folder.line(line).expect(4).json();
+    assert_eq!(report["error"]["code"], "no-path");
+    assert!(report["error"]["message"].as_str().unwrap().contains("at time"), "{report}");
+    assert!(!folder.path("m.gif").exists());
+}

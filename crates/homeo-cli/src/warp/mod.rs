@@ -1,7 +1,7 @@
 //! `homeo warp`: pictures and points move with a polygon, one-to-one.
 
 mod landmarks;
-mod picture;
+pub mod picture;
 pub mod polygons;
 
 use std::path::Path;
@@ -11,11 +11,12 @@ use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, har
 use homeo::map::{HarmonicMap, PlanarBijection};
 use homeo::progress::Progress;
 use homeo::warp::{Filter, Placement, backward_field};
+use homeo_core::planar::PlanarDomain;
 use homeo_verify::Claim;
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
-use crate::args::{Coordinates, FilterName, MiddleName, WarpArgs};
+use crate::args::{Coordinates, FilterName, MiddleName, PolygonArgs, WarpArgs};
 use crate::failure::{Failure, Result};
 use crate::outputs::{Outputs, check_target};
 use crate::points::{self, PointFormat, Table, csv, npy};
@@ -30,10 +31,11 @@ pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Resu
     check_outputs(options)?;
     session.stage("read");
     let input = Input::read(&options.input)?;
-    let first = polygons::paths(options)[0];
+    let first = options.landmarks.as_deref().or_else(|| polygons::paths(&options.polygons).first().copied());
+    let first = first.unwrap_or(&options.input);
     let (map, turn) = match &options.landmarks {
         Some(path) => (landmarks::map(path)?, None),
-        None => polygon_map(session, options)?,
+        None => polygon_map(session, &options.polygons)?,
     };
     session.fact("input", proof::domain_json(map.source(), first));
     let provenance = provenance(options, first, turn);
@@ -47,10 +49,9 @@ pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Resu
 }
 
 /// The map between polygons, and the turn that was asked for.
-fn polygon_map(session: &Session, options: &WarpArgs) -> Result<(HarmonicMap, Option<f64>)> {
+fn polygon_map(session: &Session, options: &PolygonArgs) -> Result<(HarmonicMap, Option<f64>)> {
     let (pair, turn) = polygons::read(options)?;
-    let params = HarmonicParams { triangles: options.triangles, middle: shape(options.middle), turn_degrees: turn };
-    let map = harmonic_map(&pair, params, session).map_err(|error| explain(session, &error))?;
+    let map = harmonic_map(&pair, params(options, turn), session).map_err(|error| explain(session, &error))?;
     Ok((map, turn))
 }
 
@@ -62,7 +63,8 @@ enum Input {
 
 fn check_outputs(options: &WarpArgs) -> Result<()> {
     let mut inputs = vec![options.input.as_path()];
-    inputs.extend(polygons::paths(options));
+    inputs.extend(options.landmarks.as_deref());
+    inputs.extend(polygons::paths(&options.polygons));
     let paths: Vec<&Path> =
         [&options.output, &options.map, &options.field].into_iter().filter_map(|path| path.as_deref()).collect();
     for (k, path) in paths.iter().enumerate() {
@@ -83,6 +85,11 @@ fn check_outputs(options: &WarpArgs) -> Result<()> {
     }
 }
 
+/// What is asked of the map.
+pub fn params(options: &PolygonArgs, turn: Option<f64>) -> HarmonicParams {
+    HarmonicParams { triangles: options.triangles, middle: shape(options.middle), turn_degrees: turn }
+}
+
 fn shape(name: MiddleName) -> MiddleShape {
     match name {
         MiddleName::Lengths => MiddleShape::AveragedLengths,
@@ -90,7 +97,8 @@ fn shape(name: MiddleName) -> MiddleShape {
     }
 }
 
-fn filter(name: FilterName) -> Filter {
+/// The filter of this name.
+pub fn filter(name: FilterName) -> Filter {
     match name {
         FilterName::Linear => Filter::Linear,
         FilterName::Bicubic => Filter::Bicubic,
@@ -98,7 +106,8 @@ fn filter(name: FilterName) -> Filter {
     }
 }
 
-fn explain(session: &Session, error: &HarmonicError) -> Failure {
+/// Why there is no map.
+pub fn explain(session: &Session, error: &HarmonicError) -> Failure {
     match error {
         HarmonicError::Cancelled => session.stopped(),
         HarmonicError::TooManyHoles(_) => Failure::input("too-many-holes", error.to_string()),
@@ -111,8 +120,8 @@ fn provenance(options: &WarpArgs, source: &Path, turn: Option<f64>) -> Provenanc
         source_name: file_name(source),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
-            "triangles": options.triangles, "turn_degrees": turn,
-            "middle": if options.middle == MiddleName::Regular { "regular" } else { "lengths" },
+            "triangles": options.polygons.triangles, "turn_degrees": turn,
+            "middle": if options.polygons.middle == MiddleName::Regular { "regular" } else { "lengths" },
         }),
     }
 }
@@ -155,11 +164,7 @@ fn warp_picture(
     outputs: &mut Outputs,
 ) -> Result<Done> {
     let [width, height] = picture.size();
-    let default = if options.pair.is_some() { Coordinates::Fit } else { Coordinates::Pixels };
-    let placement = match options.coordinates.unwrap_or(default) {
-        Coordinates::Fit => Placement::fit(map.source(), map.target(), width, height),
-        Coordinates::Pixels => Placement { origin: [0.0, 0.0], scale: 1.0, is_upwards: false },
-    };
+    let placement = placement(&options.polygons, map.source(), map.target(), [width, height]);
     let bits = picture.bits();
     if let Some(path) = &options.field {
         let field = backward_field(map, &placement, width, height);
@@ -167,13 +172,27 @@ fn warp_picture(
         outputs.stage(session, path, |out| std::io::Write::write_all(out, &bytes).map_err(|e| e.to_string()))?;
     }
     if let Some(path) = &options.output {
-        let warped = picture.warped(map, &placement, filter(options.filter), session);
+        let warped = picture.warped(map, &placement, filter(options.polygons.filter), session);
         let warped = warped.ok_or_else(|| session.stopped())?;
         session.stage("write");
         warped.stage(session, path, outputs)?;
     }
     let fields = json!({"width": width, "height": height, "bits": bits});
     Ok(Done { fields, words: format!("{width} x {height} pixels of {bits} bits"), outside: 0 })
+}
+
+/// Where the polygons lie on a picture.
+pub fn placement(
+    options: &PolygonArgs,
+    source: &PlanarDomain,
+    target: &PlanarDomain,
+    [width, height]: [usize; 2],
+) -> Placement {
+    let default = if options.pair.is_some() { Coordinates::Fit } else { Coordinates::Pixels };
+    match options.coordinates.unwrap_or(default) {
+        Coordinates::Fit => Placement::fit(source, target, width, height),
+        Coordinates::Pixels => Placement { origin: [0.0, 0.0], scale: 1.0, is_upwards: false },
+    }
 }
 
 fn warp_points(

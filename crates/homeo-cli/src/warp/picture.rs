@@ -76,23 +76,28 @@ impl Picture {
         })
     }
 
-    /// Writes it. JPEG has no opacity and 8 bits: the picture is laid on white.
+    /// Writes it.
     pub fn stage(self, session: &Session, path: &Path, outputs: &mut Outputs) -> Result<()> {
         let format = ImageFormat::from_path(path)
             .map_err(|_| Failure::usage(format!("{}: pictures are .png or .jpg", path.display())))?;
-        let image = match (format, self) {
-            (ImageFormat::Jpeg, Self::Bytes(raster)) => on_white(&raster),
-            (ImageFormat::Jpeg, Self::Words(raster)) => on_white(&raster),
-            (_, Self::Bytes(raster)) => bytes_image(raster),
-            (_, Self::Words(raster)) => words_image(raster),
-        };
-        let image = image.ok_or_else(|| Failure::bug("a picture has another size than its samples"))?;
+        let image = self.into_image(format)?;
         outputs.stage(session, path, |out: &mut BufWriter<_>| {
             let mut bytes = Cursor::new(Vec::new());
             image.write_to(&mut bytes, format).map_err(|e| e.to_string())?;
             std::io::Write::write_all(out, bytes.get_ref()).map_err(|e| e.to_string())
         })?;
         Ok(())
+    }
+
+    /// For a format. JPEG has no opacity and 8 bits: the picture is laid on white.
+    pub fn into_image(self, format: ImageFormat) -> Result<DynamicImage> {
+        let image = match (format, self) {
+            (ImageFormat::Jpeg, Self::Bytes(raster)) => on_white(&raster),
+            (ImageFormat::Jpeg, Self::Words(raster)) => on_white(&raster),
+            (_, Self::Bytes(raster)) => bytes_image(raster),
+            (_, Self::Words(raster)) => words_image(raster),
+        };
+        image.ok_or_else(|| Failure::bug("a picture has another size than its samples"))
     }
 }
 

@@ -5,18 +5,18 @@ use std::path::Path;
 use homeo_core::planar::{DomainPair, PairError, PlanarDomain, RingPair, read_pair, read_rings};
 use serde_json::Value;
 
-use crate::args::WarpArgs;
+use crate::args::PolygonArgs;
 use crate::failure::{Failure, Result};
 
 /// The pair that is asked for, and by how many degrees its hole shall turn.
-pub fn read(options: &WarpArgs) -> Result<(DomainPair, Option<f64>)> {
+pub fn read(options: &PolygonArgs) -> Result<(DomainPair, Option<f64>)> {
     let (rings, path) = match (&options.pair, &options.from, &options.to) {
         (Some(path), _, _) => (pair(path)?, path),
         (None, Some(from), Some(to)) => {
             let rings = |path: &Path| read_rings(&json(path)?).map_err(|e| syntax(path, &e.to_string()));
             (RingPair { source: rings(from)?, target: rings(to)?, turn_degrees: None }, from)
         }
-        _ => return Err(Failure::usage("give --pair, or --from and --to")),
+        _ => return Err(Failure::usage("give --pair, or --from and --to: the polygons before and after")),
     };
     let turn = options.turn.or(rings.turn_degrees);
     let pair = DomainPair::new(rings.source, rings.target).map_err(|error| explain(path, &error))?;
@@ -34,11 +34,8 @@ pub fn source(path: &Path) -> Result<PlanarDomain> {
 }
 
 /// The files that are read.
-pub fn paths(options: &WarpArgs) -> Vec<&Path> {
-    [&options.landmarks, &options.pair, &options.from, &options.to]
-        .into_iter()
-        .filter_map(|path| path.as_deref())
-        .collect()
+pub fn paths(options: &PolygonArgs) -> Vec<&Path> {
+    [&options.pair, &options.from, &options.to].into_iter().filter_map(|path| path.as_deref()).collect()
 }
 
 fn pair(path: &Path) -> Result<RingPair> {

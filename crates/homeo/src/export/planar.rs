@@ -39,15 +39,33 @@ pub fn planar_page(map: &dyn PlanarBijection, title: &str, statement: &str) -> S
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\
          <title>{title}</title><style>{STYLE}</style><h1>{title}</h1><p class=\"holds\"><b>Certified.</b> {statement}</p>\
          <main>{source}{target}</main><p>Equal colours correspond: the grid on the left goes to that on the right. \
-         No two lines of one colour meet, however close they come.</p></html>\n"
+         No two lines of one colour meet, however close they come.</p>{PLAY}\
+         <script type=\"application/json\" id=\"domains\">{}</script><script>{SCRIPT}</script></html>\n",
+        domains(map)
     )
+}
+
+/// What can be played with below the map; see `planar.js`.
+const PLAY: &str = "<h2>Try it</h2><p>Drag the vertices of the target. The grid follows by composite mean value maps along \
+straight paths; more steps undo folds. This part is sampled on a grid and is no proof; the map above is the certified one.</p>\
+<p class=\"tools\"><label>steps <select id=\"steps\"><option>auto<option>1<option>2<option>4<option>8<option>16<option>32<option>64</select></label> \
+<label>show <select id=\"show\"><option>grid<option>picture</select></label> <label>picture <input type=\"file\" id=\"file\" accept=\"image/*\"></label> \
+<button id=\"straight\">source</button> <button id=\"reset\">target</button> <output id=\"meter\"></output></p>\
+<canvas id=\"play\" width=\"1100\" height=\"800\"></canvas>";
+
+const SCRIPT: &str = include_str!("planar.js");
+
+/// Both domains as JSON. Numbers need no escaping.
+fn domains(map: &dyn PlanarBijection) -> String {
+    serde_json::json!({"source": map.source().rings(), "target": map.target().rings()}).to_string()
 }
 
 const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:1400px;margin:2em auto;padding:0 1em;background:#fff;color:#1b1b1b}\
 main{display:flex;flex-wrap:wrap;gap:1.5em}figure{flex:1 1 420px;margin:0}svg{width:100%;max-height:80vh;background:#fafafa;border:1px solid #ddd}\
 polyline{fill:none;stroke-width:.7}.u{stroke:#0072b2}.v{stroke:#d55e00}.edge{fill:none;stroke:#111;stroke-width:1.4}\
-.holds{border-left:4px solid #009e73;padding-left:.8em}figcaption{color:#555}\
-@media(prefers-color-scheme:dark){body{background:#161616;color:#eee}svg{background:#1f1f1f;border-color:#444}.edge{stroke:#eee}figcaption{color:#aaa}.u{stroke:#56b4e9}.v{stroke:#e69f00}}";
+canvas{width:100%;max-width:1100px;border:1px solid #ddd;background:#fafafa;touch-action:none}.tools{display:flex;flex-wrap:wrap;gap:1em;align-items:center}\
+.good{color:#007a58}.bad{color:#c0004f}output{font-weight:600}.holds{border-left:4px solid #009e73;padding-left:.8em}figcaption{color:#555}\
+@media(prefers-color-scheme:dark){body{background:#161616;color:#eee}svg,canvas{background:#1f1f1f;border-color:#444}.good{color:#3ddc97}.bad{color:#ff6b9d}.edge{stroke:#eee}figcaption{color:#aaa}.u{stroke:#56b4e9}.v{stroke:#e69f00}}";
 
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")

@@ -1,0 +1,60 @@
+//! Time of warping a picture: making the map, asking it for every pixel, and sampling.
+//!
+//! `cargo bench -p homeo --bench warp`, with `RAYON_NUM_THREADS=1` for one core. The floor is copying the picture.
+#![allow(clippy::print_stdout)]
+
+use std::f64::consts::TAU;
+use std::time::Instant;
+
+use homeo::construct::harmonic::{HarmonicParams, harmonic_map};
+use homeo::progress::Silent;
+use homeo::warp::{Filter, Placement, Raster, apply_field, backward_field};
+use homeo_core::planar::{DomainPair, Point2};
+
+const WIDTH: usize = 3840;
+const HEIGHT: usize = 2160;
+
+/// A polygon near the frame, waved or not.
+fn cage(n: usize, wave: f64) -> Vec<Vec<Point2>> {
+    let place = |k: usize| {
+        let angle = TAU * k as f64 / n as f64;
+        let r = 0.95 + wave * (5.0 * angle).sin();
+        [1900.0 + 1900.0 * r * angle.cos(), 1080.0 + 1070.0 * r * angle.sin()]
+    };
+    vec![(0..n).map(place).collect()]
+}
+
+fn least_of<T>(runs: usize, mut work: impl FnMut() -> T) -> (f64, T) {
+    let mut best = f64::INFINITY;
+    let mut result = None;
+    for _ in 0..runs {
+        let start = Instant::now();
+        let made = work();
+        best = best.min(start.elapsed().as_secs_f64());
+        result = Some(made);
+    }
+    (best, result.unwrap_or_else(|| unreachable!("there is a run")))
+}
+
+fn main() {
+    println!(
+        "{WIDTH} x {HEIGHT} pixels, {} threads, seconds (the least of several runs)",
+        rayon::current_num_threads()
+    );
+    let mut picture = Raster::<u8>::zero(WIDTH, HEIGHT, 3, false);
+    picture.samples.iter_mut().enumerate().for_each(|(i, s)| *s = (i * 2_654_435_761 >> 13) as u8);
+    let (copy, _) = least_of(5, || picture.clone());
+    println!("{copy:8.3}  copy of the picture (floor)");
+    let placement = Placement { origin: [0.0, 0.0], scale: 1.0, is_upwards: false };
+    for n in [20, 200] {
+        let pair = DomainPair::new(cage(n, 0.0), cage(n, 0.04)).expect("a pair");
+        let (made, map) = least_of(2, || harmonic_map(&pair, HarmonicParams::default(), &Silent).expect("a map"));
+        println!("{made:8.3}  map of a {n}-gon");
+        let (asked, field) = least_of(3, || backward_field(&map, &placement, WIDTH, HEIGHT));
+        println!("{asked:8.3}  where every pixel comes from");
+        for filter in [Filter::Linear, Filter::Bicubic, Filter::Lanczos] {
+            let (sampled, _) = least_of(3, || apply_field(&picture, &field, WIDTH, filter));
+            println!("{sampled:8.3}  ready warp applied, {filter:?}, 3 channels of 8 bits");
+        }
+    }
+}
