@@ -15,6 +15,7 @@ pub mod map;
 pub mod overlay;
 pub mod progress;
 pub mod refine;
+pub mod shape;
 pub mod transfer;
 pub mod warp;
 

@@ -13,9 +13,16 @@ pub fn time(frame: usize, frames: usize) -> f64 {
 
 /// Which path was taken, and the polygon of every frame, each of which bounds a domain.
 pub fn shapes(pair: &DomainPair, options: &MorphArgs) -> Result<(&'static str, Vec<PlanarDomain>)> {
-    let straight = || ("straight", frames(&LinearPath::new(pair), options.frames as usize));
+    let (source, target) = (pair.source.rings(), pair.target.rings());
+    let straight = || {
+        let path = LinearPath::new(source.to_vec(), target.to_vec()).map_err(|e| e.to_string());
+        ("straight", path.and_then(|path| frames(&path, options.frames as usize)))
+    };
     let angles = || {
-        let path = LengthsAndAngles::new(pair).map_err(|e| e.to_string());
+        if source.len() > 1 {
+            return ("angles", Err("it is for polygons without holes".to_owned()));
+        }
+        let path = LengthsAndAngles::new(source[0].clone(), target[0].clone()).map_err(|e| e.to_string());
         ("angles", path.and_then(|path| frames(&path, options.frames as usize)))
     };
     let tries = match options.path {
