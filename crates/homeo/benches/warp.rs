@@ -42,7 +42,7 @@ fn main() {
         rayon::current_num_threads()
     );
     let mut picture = Raster::<u8>::zero(WIDTH, HEIGHT, 3, false);
-    picture.samples.iter_mut().enumerate().for_each(|(i, s)| *s = (i * 2_654_435_761 >> 13) as u8);
+    picture.samples.iter_mut().enumerate().for_each(|(i, s)| *s = ((i * 2_654_435_761) >> 13) as u8);
     let (copy, _) = least_of(5, || picture.clone());
     println!("{copy:8.3}  copy of the picture (floor)");
     let placement = Placement { origin: [0.0, 0.0], scale: 1.0, is_upwards: false };

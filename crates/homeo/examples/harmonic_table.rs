@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p homeo --example harmonic_table -- FOLDER [TRIANGLES]`
 
+#![allow(clippy::print_stdout)]
+
 use std::error::Error;
 use std::io::Cursor;
 use std::time::Instant;

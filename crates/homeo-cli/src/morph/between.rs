@@ -7,7 +7,7 @@ use crate::args::{MorphArgs, PathName};
 use crate::failure::{Failure, Result};
 
 /// When a frame is, from 0 to 1.
-pub fn time(frame: usize, frames: usize) -> f64 {
+fn time(frame: usize, frames: usize) -> f64 {
     frame as f64 / (frames - 1) as f64
 }
 

@@ -164,7 +164,7 @@ fn warp_picture(
     outputs: &mut Outputs,
 ) -> Result<Done> {
     let [width, height] = picture.size();
-    let placement = placement(&options.polygons, map.source(), map.target(), [width, height]);
+    let placement = placement(&options.polygons, &[map.source(), map.target()], [width, height]);
     let bits = picture.bits();
     if let Some(path) = &options.field {
         let field = backward_field(map, &placement, width, height);
@@ -182,15 +182,10 @@ fn warp_picture(
 }
 
 /// Where the polygons lie on a picture.
-pub fn placement(
-    options: &PolygonArgs,
-    source: &PlanarDomain,
-    target: &PlanarDomain,
-    [width, height]: [usize; 2],
-) -> Placement {
+pub fn placement(options: &PolygonArgs, domains: &[&PlanarDomain], [width, height]: [usize; 2]) -> Placement {
     let default = if options.pair.is_some() { Coordinates::Fit } else { Coordinates::Pixels };
     match options.coordinates.unwrap_or(default) {
-        Coordinates::Fit => Placement::fit(source, target, width, height),
+        Coordinates::Fit => Placement::fit(domains, width, height),
         Coordinates::Pixels => Placement { origin: [0.0, 0.0], scale: 1.0, is_upwards: false },
     }
 }

@@ -83,15 +83,16 @@
   const area = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
   const isFolded = (points) => ([a, b, c, d]) => {
     const [p, q, r, s] = [points[a], points[b], points[c], points[d]];
-    return !(area(p, q, r) > 0 && area(p, r, s) > 0 && area(p, q, s) > 0 && area(q, r, s) > 0);
+    // Cut along one diagonal or the other, both halves are positive unless the map folds, or bends more than the grid shows.
+    return !((area(p, q, r) > 0 && area(p, r, s) > 0) || (area(p, q, s) > 0 && area(q, r, s) > 0));
   };
 
   // Both shapes and what is dragged must stay in view.
   const all = data.source.concat(data.target).flat();
   const box = [0, 1].map((k) => [Math.min(...all.map((p) => p[k])), Math.max(...all.map((p) => p[k]))]);
-  const span = Math.max(box[0][1] - box[0][0], box[1][1] - box[1][0]) * 1.25;
+  const room = 1.25;
   const centre = box.map(([a, b]) => (a + b) / 2);
-  const scale = () => canvas.width / span;
+  const scale = () => Math.min(canvas.width / (box[0][1] - box[0][0]), canvas.height / (box[1][1] - box[1][0])) / room;
   const place = ([x, y]) => [canvas.width / 2 + (x - centre[0]) * scale(), canvas.height / 2 - (y - centre[1]) * scale()];
   const unplace = (x, y) => [centre[0] + (x - canvas.width / 2) / scale(), centre[1] - (y - canvas.height / 2) / scale()];
 

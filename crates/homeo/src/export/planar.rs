@@ -130,3 +130,27 @@ impl View {
         domain.rings().iter().map(|ring| format!("M{}Z", self.path(ring))).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::construct::harmonic::{HarmonicParams, harmonic_map};
+    use crate::progress::Silent;
+    use homeo_core::planar::DomainPair;
+
+    #[test]
+    fn the_page_has_both_domains_and_needs_nothing_else() {
+        let square = vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]];
+        let kite = vec![vec![[0.0, 0.0], [1.0, 0.1], [2.5, 2.5], [0.1, 1.0]]];
+        let pair = DomainPair::new(square, kite).expect("a pair");
+        let params = HarmonicParams { triangles: 50, ..HarmonicParams::default() };
+        let map = harmonic_map(&pair, params, &Silent).expect("a map");
+        let page = planar_page(&map, "a <b> & c", "it holds");
+        assert!(page.contains("<h1>a &lt;b&gt; &amp; c</h1>") && page.contains("it holds"));
+        assert!(!page.contains("http") && !page.contains("src="), "the page needs no network");
+        assert_eq!(page.matches("<polyline class=\"u\"").count(), 80, "forty lines on either side");
+        let json = page.split("id=\"domains\">").nth(1).and_then(|rest| rest.split("</script>").next()).expect("data");
+        let value: serde_json::Value = serde_json::from_str(json).expect("JSON");
+        assert_eq!(value["target"][0][2], serde_json::json!([2.5, 2.5]));
+    }
+}

@@ -28,20 +28,20 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Puts two domains into the middle of a picture, as large as they fit, upwards.
+    /// Puts domains into the middle of a picture, as large as they fit, upwards.
     ///
     /// ```
     /// use homeo::warp::Placement;
     /// use homeo_core::planar::PlanarDomain;
     /// let triangle = vec![vec![[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]];
     /// let domain = PlanarDomain::new(triangle).unwrap();
-    /// let placement = Placement::fit(&domain, &domain, 200, 200);
+    /// let placement = Placement::fit(&[&domain], 200, 200);
     /// assert_eq!((placement.scale, placement.origin), (100.0, [0.0, 150.0]));
     /// ```
-    pub fn fit(source: &PlanarDomain, target: &PlanarDomain, width: usize, height: usize) -> Self {
-        let ([a, b], [c, d]) = (source.bounds(), target.bounds());
-        let low = [0, 1].map(|axis| a[axis].min(c[axis]));
-        let high = [0, 1].map(|axis| b[axis].max(d[axis]));
+    pub fn fit(domains: &[&PlanarDomain], width: usize, height: usize) -> Self {
+        let bounds = || domains.iter().map(|domain| domain.bounds());
+        let low = [0, 1].map(|axis| bounds().map(|[low, _]| low[axis]).fold(f64::INFINITY, f64::min));
+        let high = [0, 1].map(|axis| bounds().map(|[_, high]| high[axis]).fold(f64::NEG_INFINITY, f64::max));
         let size = [width as f64, height as f64];
         let scale = (size[0] / (high[0] - low[0])).min(size[1] / (high[1] - low[1]));
         let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));

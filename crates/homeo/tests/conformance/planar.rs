@@ -33,7 +33,7 @@ fn square() -> Rings {
 }
 
 fn star(spikes: usize, turn: f64) -> Rings {
-    let tip = |k: usize| if k % 2 == 0 { 1.0 } else { 0.35 };
+    let tip = |k: usize| if k.is_multiple_of(2) { 1.0 } else { 0.35 };
     let place = |k: usize| {
         let angle = TAU * k as f64 / (2 * spikes) as f64 + turn;
         [tip(k) * angle.cos(), tip(k) * angle.sin()]

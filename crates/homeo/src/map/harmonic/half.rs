@@ -1,6 +1,7 @@
 //! One half of a composite harmonic map: a triangulated domain, flattened onto the middle.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use homeo_core::number::{Interval, Rational, Scalar};
 use homeo_core::planar::{PlanarDomain, Point2};
@@ -149,14 +150,14 @@ impl Half {
     }
 
     /// By how many turns a point of a cylinder may have to go on to meet the images of the triangles.
-    pub(super) fn turns_to_try<T: Scalar>(&self, middle: &Middle, turn: &T) -> std::ops::RangeInclusive<i32> {
+    pub(super) fn turns_to_try<T: Scalar>(&self, middle: &Middle, turn: &T) -> Range<i32> {
         if !middle.is_cylinder() {
-            return 0..=0;
+            return 0..1;
         }
         let (at, [low, high]) = (turn.enclosure(), self.reach());
         let [first, last] = [(low - at.high()).ceil(), (high - at.low()).floor()];
         // Nothing is tried where nothing is known, or images are spread over so many turns as in damaged files only.
-        if last - first < MOST_TURNS { first as i32..=last as i32 } else { 1..=0 }
+        if last - first < MOST_TURNS { first as i32..last as i32 + 1 } else { 0..0 }
     }
 
     /// Takes a point from one side to the other by the triangle that holds it. `None` where rounding leaves open in which
