@@ -108,12 +108,7 @@ fn centroid(ring: &[[f64; 2]]) -> [f64; 2] {
 }
 
 /// The ring of edges of given directions and of lengths that are scaled to a perimeter, with its centroid in place.
-pub(super) fn ring_of_edges(
-    lengths: &[f64],
-    directions: &[f64],
-    perimeter: f64,
-    place: [f64; 2],
-) -> Vec<[f64; 2]> {
+pub(super) fn ring_of_edges(lengths: &[f64], directions: &[f64], perimeter: f64, place: [f64; 2]) -> Vec<[f64; 2]> {
     let factor = perimeter / lengths.iter().sum::<f64>();
     let mut here = [0.0; 2];
     let mut ring = Vec::with_capacity(lengths.len());
