@@ -11,21 +11,22 @@ const CLOSE_NODES: f64 = 1e-6;
 /// Curvature and length of two closed curves move evenly, but for a least correction that closes the curve.
 ///
 /// The curves are given by samples, the denser the better, each by as many as one likes; first samples correspond, and
-/// points at the same part of the length. Both curvatures are linear between the nodes of the joint partition. The edges
-/// between the nodes keep their parts of the length; turning angles are corrected so that `sum (b - a)^2 / w`, the square
-/// of the change of curvature in the mean, is least. The mean direction (whole turns taken off as for
+/// points at the same part of the length. Nodes of the joint partition are where either has a sample. The edges between
+/// nodes keep their parts of the length; turning angles are those of the mixed curvature, corrected so that
+/// `sum (b - a)^2 / w`, the square of the change of curvature in the mean, is least: then the change is linear in the
+/// place. The mean direction (whole turns taken off as for
 /// [`LengthsAndAngles`](super::LengthsAndAngles)), the length and the centroid of the edges move evenly.
 ///
 /// # Guarantee
 /// Shapes close to `1e-12` of their length and turn as often as the curves; the correction is a stationary point of the
-/// least-squares problem. Between times 0 and 1 there is a vertex for each node, [`Self::vertex_count`]; at 0 and 1 there
-/// are the samples as given. Where the curves have different nodes the path so jumps at 0 and 1, by second order in the
-/// distance of samples; where they have the same, it does not. Shapes may meet themselves:
-/// see [`first_not_simple`](super::first_not_simple).
+/// least-squares problem. Between times 0 and 1 there is a vertex for each node, [`Self::vertex_count`]; at 0 and 1
+/// there are the samples as given. Where the curves have different nodes the path so jumps at 0 and 1, by second order
+/// in the distance of samples; where they have the same, it does not. Shapes may meet themselves: see
+/// [`first_not_simple`](super::first_not_simple).
 ///
 /// # References
-/// Schneider 2017, section 3.3. There the mean lacks the weights of nodes, the angle between the last edge and the first
-/// is free, and the start moves evenly with a tangent that vanishes between opposite ones.
+/// Schneider 2017, section 3.3. There the mean lacks the weights of nodes, the angle between the last edge and the
+/// first is free, and the start moves evenly with a tangent that vanishes between opposite ones.
 ///
 /// # Example
 /// ```
@@ -80,13 +81,19 @@ impl CurvatureBlend {
         })
     }
 
-    /// How many nodes the joint partition has, and shapes between have vertices: as many as both curves have samples, less
-    /// those at the same part of the length.
+    /// How many nodes the joint partition has, and shapes between have vertices: as many as both curves have samples,
+    /// less those at the same part of the length.
     pub fn vertex_count(&self) -> usize {
         self.lengths.len()
     }
 
-    /// By how much the curvature was corrected, in the mean: the root of the integral of the squared change, for length 1.
+    /// The parts of the length from node to node, and so of the edges of all shapes between (#vertices).
+    pub fn parts_of_length(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// By how much the curvature is corrected, in the mean: the root of the integral of the squared change, for length
+    /// 1. Compare with `TAU`, the curvature of a circle.
     ///
     /// # Errors
     /// The time is not in `[0, 1]`, or the shape could not be closed.

@@ -8,6 +8,15 @@ const LEAST_PART: f64 = 0.1;
 /// What may be left open, as a part of the perimeter.
 const OPEN: f64 = 1e-14;
 
+/// Changes of curvature, in the mean, below which steps that shrink are taken whole: the merit is rounded by then.
+const SMALL_CHANGE: f64 = 1e-2;
+
+/// Changes of curvature, in the mean, below which steps may end.
+const LEAST_CHANGE: f64 = 1e-9;
+
+/// Steps at most.
+const MOST_STEPS: usize = 300;
+
 /// A correction that was not found: what is left open, as a part of the perimeter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Open(pub f64);
@@ -72,29 +81,10 @@ fn least_on_line(slope: impl Fn(f64) -> f64) -> f64 {
 /// Turning angles `b` that close a ring of edges of given lengths, and turn it a given number of times, with
 /// `sum (b - a)^2 / w` least near the given angles `a`: a stationary point.
 ///
-/// Sequential quadratic steps with the constraints made linear, shortened until a merit falls that counts the distance and
-/// what is open; then steps that only close.
+/// Sequential quadratic steps with the constraints made linear; then steps that only close.
 pub(super) fn closing_turns(turns: &[f64], weights: &[f64], lengths: &[f64], whole: f64) -> Result<Vec<f64>, Open> {
     let problem = Turning { wanted: turns, weights, lengths, whole };
-    let mut current = turns.to_vec();
-    let mut penalty = 0.0;
-    for _ in 0..500 {
-        let open = problem.open(&current);
-        let (step, multipliers) = problem.step(&current, open, Towards::Wanted).ok_or(Open(size(open)))?;
-        penalty = f64::max(penalty, 2.0 * size(multipliers));
-        let merit = |b: &[f64]| 0.5 * problem.distance_squared(b) + penalty * one_norm(problem.open(b));
-        let (mut part, before) = (1.0, merit(&current));
-        let mut next = moved(&current, 1.0, &step);
-        while part > 1e-6 && merit(&next) > before * (1.0 + 1e-15) {
-            part *= 0.5;
-            next = moved(&current, part, &step);
-        }
-        current = next;
-        let change = step.iter().zip(weights).map(|(s, w)| s * s / w).sum::<f64>().sqrt();
-        if change <= 1e-11 && size(open) <= 1e-9 || part <= 1e-6 {
-            break;
-        }
-    }
+    let mut current = problem.nearest()?;
     for _ in 0..20 {
         let open = problem.open(&current);
         if size(open) <= OPEN {
@@ -128,12 +118,44 @@ struct Turning<'a> {
 }
 
 impl Turning<'_> {
+    /// Angles at which steps vanish. Small steps that shrink are taken whole; others are shortened until a merit falls
+    /// that counts the distance and what is open.
+    fn nearest(&self) -> Result<Vec<f64>, Open> {
+        let mut current = self.wanted.to_vec();
+        let (mut penalty, mut last) = (0.0, f64::INFINITY);
+        for _ in 0..MOST_STEPS {
+            let open = self.open(&current);
+            let (step, multipliers) = self.step(&current, open, Towards::Wanted).ok_or(Open(size(open)))?;
+            let change = step.iter().zip(self.weights).map(|(s, w)| s * s / w).sum::<f64>().sqrt();
+            let shrinks = change < SMALL_CHANGE && change < 0.8 * last;
+            if change < LEAST_CHANGE && !shrinks {
+                return Ok(current);
+            }
+            penalty = f64::max(penalty, 2.0 * size(multipliers));
+            let part = if shrinks { 1.0 } else { self.falling_part(&current, &step, penalty) };
+            current = moved(&current, part, &step);
+            last = change;
+        }
+        Err(Open(size(self.open(&current))))
+    }
+
+    /// A part of a step that lets the merit fall, halved from 1 as often as need be.
+    fn falling_part(&self, turns: &[f64], step: &[f64], penalty: f64) -> f64 {
+        let merit = |b: &[f64]| 0.5 * self.distance_squared(b) + penalty * one_norm(self.open(b));
+        let before = merit(turns);
+        let mut part = 1.0;
+        while part > 1e-6 && merit(&moved(turns, part, step)) > before {
+            part *= 0.5;
+        }
+        part
+    }
+
     /// Squared distance of angles from the wanted ones.
     fn distance_squared(&self, turns: &[f64]) -> f64 {
         (0..turns.len()).map(|i| (turns[i] - self.wanted[i]).powi(2) / self.weights[i]).sum()
     }
 
-    /// Places of the vertices, and of the end of the last edge. The first edge has the first turning angle as direction.
+    /// Places of the vertices, and of the end of the last edge. The first edge's direction is the first turning angle.
     fn places(&self, turns: &[f64]) -> Vec<[f64; 2]> {
         let (mut direction, mut here) = (0.0, [0.0; 2]);
         let mut places = vec![here];
@@ -178,7 +200,7 @@ impl Turning<'_> {
 fn solve(mut matrix: [[f64; 3]; 3], mut right: [f64; 3]) -> Option<[f64; 3]> {
     let diagonal = [matrix[0][0], matrix[1][1], matrix[2][2]];
     for k in 0..3 {
-        if !(matrix[k][k] > 1e-14 * diagonal[k]) {
+        if matrix[k][k].is_nan() || matrix[k][k] <= 1e-14 * diagonal[k] {
             return None;
         }
         for j in k + 1..3 {

@@ -8,19 +8,19 @@ use super::{ShapeError, ShapePath, check_time, mix};
 ///
 /// Directions of edges are `(1 - t) a + t b`, unwrapped along the ring: that is, turning angles and the direction of a
 /// reference edge move evenly, whichever edge it is. Whole turns are taken off so that the mean turn of the edges, by
-/// length, is in `(-PI, PI]`. Lengths, as parts of the perimeter, are corrected by `d` with `sum (d / w)^2` least, where
-/// `w` is how much the length changes from source to target, but not below a thousandth of the greatest change. The
-/// perimeter and the centroid of the edges move evenly.
+/// length, is in `(-PI, PI]`. Lengths, as parts of the perimeter, are corrected by `d` with `sum (d / w)^2` least,
+/// where `w` is how much the length changes from source to target, but not below a thousandth of the greatest change.
+/// The perimeter and the centroid of the edges move evenly.
 ///
 /// # Guarantee
-/// Such lengths exist, at all times: as each turning angle is below a half turn and their sum is a whole number of turns
-/// other than 0, directions of edges are in no half plane. Each edge keeps a tenth of its length or more. If the target
-/// is moved, turned (the shorter way still being the same) or scaled, all shapes on the way are, but for rounding.
-/// Shapes may meet themselves: see [`first_not_simple`](super::first_not_simple).
+/// Such lengths exist, at all times: as each turning angle is below a half turn and their sum is a whole number of
+/// turns other than 0, directions of edges are in no half plane. Before the perimeter is set each edge keeps a tenth of
+/// its part or more. If the target is moved, turned (the shorter way still being the same) or scaled, so are all shapes
+/// on the way, but for rounding. Shapes may meet themselves: see [`first_not_simple`](super::first_not_simple).
 ///
 /// # References
-/// Schneider 2017, section 3.1; Sederberg, Gao, Wang, Mu 1993. There lengths are not parts of the perimeter, so that the
-/// result depends on the target's size, and corrected ones may be negative.
+/// Schneider 2017, section 3.1; Sederberg, Gao, Wang, Mu 1993. There lengths are not parts of the perimeter, so that
+/// the result depends on the target's size, and corrected ones may be negative.
 ///
 /// # Example
 /// ```
@@ -46,8 +46,8 @@ impl LengthsAndAngles {
     /// The path between two rings whose vertices correspond by number.
     ///
     /// # Errors
-    /// Numbers of vertices differ; coordinates are out of range; an edge has length zero or runs back on the one before;
-    /// the rings do not turn the same number of times, or do not turn (an eight).
+    /// Numbers of vertices differ; coordinates are out of range; an edge has length zero or runs back on the one
+    /// before; the rings do not turn the same number of times, or do not turn (an eight).
     ///
     /// # Complexity
     /// Linear.
@@ -75,6 +75,8 @@ impl LengthsAndAngles {
 }
 
 impl ShapePath for LengthsAndAngles {
+    /// # Complexity
+    /// Linear for each step of the iteration: two steps, or some more where lengths come to their bounds.
     fn at(&self, t: f64) -> Result<Vec<Vec<[f64; 2]>>, ShapeError> {
         check_time(t)?;
         if t == 0.0 || t == 1.0 {

@@ -115,7 +115,9 @@ pub enum ShapeError {
     #[error("source and target turn 0 times, like an eight: for such rings take another path")]
     DoesNotTurn,
     /// The correction that closes the shape was not found.
-    #[error("the shape at time {t} could not be closed: {residual:e} of its length is left open")]
+    #[error(
+        "no correction was found that closes the shape at time {t}: the last try leaves {residual:e} of its length open"
+    )]
     NotClosed {
         /// The time.
         t: f64,

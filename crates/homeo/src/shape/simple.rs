@@ -4,8 +4,8 @@ use homeo_core::planar::{DomainError, PlanarDomain};
 
 use super::{ShapeError, ShapePath};
 
-/// Whether rings bound a domain, exactly: the outer one, counter-clockwise, then those of holes, clockwise; all simple and
-/// apart.
+/// Whether rings bound a domain, exactly: the outer one, counter-clockwise, then those of holes, clockwise; all simple
+/// and apart.
 ///
 /// # Errors
 /// The first thing that is wrong with them.
