@@ -71,6 +71,8 @@ pub enum Verb {
     Warp(WarpArgs),
     /// The frames between, as a polygon moves with the picture in it
     Morph(MorphArgs),
+    /// Closed curves between two others, by curvature
+    Blend(BlendArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
     /// Check the certificate of a map, independently of how it was made
@@ -92,6 +94,7 @@ impl Verb {
             Self::Pl(_) => "pl",
             Self::Warp(_) => "warp",
             Self::Morph(_) => "morph",
+            Self::Blend(_) => "blend",
             Self::Eval(_) => "eval",
             Self::Verify(_) => "verify",
             Self::Report(_) => "report",
@@ -557,6 +560,27 @@ pub struct MorphArgs {
     /// How the polygon moves
     #[arg(long, value_enum, value_name = "PATH", default_value_t = PathName::Auto)]
     pub path: PathName,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo blend testdata/polygons/ellipse.json testdata/polygons/bean.json --frames 9 -o blend.svg
+
+Curves are JSON lists [[x, y], ...] of samples, dense ones and as many as one likes; the first ones correspond.
+Every curve between is closed; whether it meets itself is tested exactly, and said.")]
+pub struct BlendArgs {
+    /// The first curve
+    #[arg(value_name = "A.json")]
+    pub from: PathBuf,
+    /// The last curve
+    #[arg(value_name = "B.json")]
+    pub to: PathBuf,
+    /// All curves: .json, or .svg for a drawing
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// How many curves, the first and the last included
+    #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    pub frames: u32,
 }
 
 /// How a polygon becomes another.

@@ -41,8 +41,10 @@ use outputs::Outputs;
 use session::Session;
 
 /// As typed; wrong usage is reported before the command line is understood.
-const VERBS: [&str; 12] =
-    ["info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "eval", "verify", "report"];
+const VERBS: [&str; 13] = [
+    "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "blend", "eval", "verify",
+    "report",
+];
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -106,6 +108,7 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
         Verb::Pl(options) => inside::pl(session, options, &mut outputs),
         Verb::Warp(options) => warp::run(session, options, &mut outputs),
         Verb::Morph(options) => morph::run(session, options, &mut outputs),
+        Verb::Blend(options) => morph::blend(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),
         Verb::Report(options) => report::run(session, options, &mut outputs),

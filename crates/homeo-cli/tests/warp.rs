@@ -198,3 +198,20 @@ fn a_path_that_crosses_itself_is_refused() {
     assert!(report["error"]["message"].as_str().unwrap().contains("at time"), "{report}");
     assert!(!folder.path("m.gif").exists());
 }
+
+#[test]
+fn curves_are_blended_and_closed() {
+    let folder = folder();
+    let line = "blend testdata/polygons/ellipse.json testdata/polygons/bean.json --frames 5";
+    let report = folder.line(&format!("{line} -o b.json --json")).expect(0).json();
+    assert_eq!(report["quality"]["frames"], 5);
+    let curves: serde_json::Value = serde_json::from_str(&folder.text("b.json")).unwrap();
+    let first: serde_json::Value = serde_json::from_str(&folder.text("testdata/polygons/ellipse.json")).unwrap();
+    assert_eq!((&curves["frames"][0]["points"], &curves["frames"][2]["simple"]), (&first, &true.into()));
+    folder.line(&format!("{line} -o b.svg")).expect(0);
+    assert_eq!(folder.text("b.svg").matches("<polygon").count(), 5);
+    folder.write("eight.json", "[[0,0],[2,2],[2,0],[0,2]]");
+    let report = folder.line("blend testdata/polygons/ellipse.json eight.json -o c.svg --json").expect(3).json();
+    assert_eq!(report["error"]["code"], "unfit-input");
+    folder.line(&format!("{line} -o b.png")).expect(2);
+}

@@ -2,6 +2,9 @@
 
 mod animation;
 mod between;
+mod blend;
+
+pub use blend::blend;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use homeo_core::planar::{DomainPair, PairError, PlanarDomain, RingPair, read_pair, read_rings};
+use homeo_core::planar::{DomainPair, PairError, PlanarDomain, Point2, RingPair, read_pair, read_rings};
 use serde_json::Value;
 
 use crate::args::PolygonArgs;
@@ -31,6 +31,17 @@ pub fn source(path: &Path) -> Result<PlanarDomain> {
         None => read_rings(&value).map_err(|e| syntax(path, &e.to_string()))?,
     };
     Ok(DomainPair::new(rings.clone(), rings).map_err(|error| explain(path, &error))?.source)
+}
+
+/// A closed curve as a list of points; it may cross itself.
+pub fn curve(path: &Path) -> Result<Vec<Point2>> {
+    let mut rings = read_rings(&json(path)?).map_err(|e| syntax(path, &e.to_string()))?;
+    match rings.pop() {
+        Some(ring) if rings.is_empty() => Ok(ring),
+        _ => {
+            Err(Failure::input("bad-syntax", format!("{}: one closed curve is needed, without holes", path.display())))
+        }
+    }
 }
 
 /// The files that are read.

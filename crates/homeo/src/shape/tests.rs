@@ -1,6 +1,3 @@
-<<<<<<< HEAD
-
-=======
 //! Laws of the paths, with controls that must fail.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -473,4 +470,3 @@ fn curves_that_turn_twice_or_not_at_all_blend_too() {
         assert_eq!(Measures::new(&one(&path.unwrap(), 0.5)).unwrap().turning_number, turns);
     }
 }
->>>>>>> coords
