@@ -5,6 +5,7 @@ use std::panic::catch_unwind;
 
 use homeo::certificate::{FoliationMap, StoredMap, read_map};
 use homeo::map::{Bijection, Foliation, PlanarBijection, Target};
+use homeo_verify::verify_bytes;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -119,7 +120,11 @@ fn try_mutations(count: usize, seed: u64, mutation: impl Fn(&[u8], &mut Random) 
     for (number, original) in files().iter().enumerate() {
         for round in 0..count {
             let bytes = mutation(original, &mut random);
-            let answer = catch_unwind(|| read_map(&bytes).map(|map| ask(&map)).is_ok());
+            let answer = catch_unwind(|| {
+                // The checker is asked too: whatever it says, it does not panic.
+                let _ = verify_bytes(&bytes);
+                read_map(&bytes).map(|map| ask(&map)).is_ok()
+            });
             match answer {
                 Ok(is_readable) => outcomes.readable += usize::from(is_readable),
                 Err(_) => outcomes.panics.push(format!("file {number} round {round}")),
