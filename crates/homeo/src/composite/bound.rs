@@ -3,7 +3,7 @@
 use homeo_core::planar::{PlanarDomain, Point2};
 use rayon::prelude::*;
 
-use super::chart::{Chart, Frame, Step};
+use super::chart::{Chart, Frame, Guide, Step};
 use super::number::Ball;
 use super::triangulation::{TriangulationError, check_triangles};
 
@@ -133,8 +133,7 @@ impl Step {
     fn sampled_fold(&self) -> Option<(Point2, f64)> {
         let worst_of = |chart: &Chart| {
             let mut frame = Frame::<f64>::new(self, chart);
-            let identity = [[1.0, 0.0], [0.0, 1.0]];
-            let sample = |at: [f64; 2]| (frame.evaluate(at[0], at[1], &identity).determinant, at);
+            let sample = |at: [f64; 2]| (frame.evaluate(at[0], at[1], &Guide::NONE).determinant, at);
             SAMPLES.map(sample).into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
         };
         let worst: Vec<_> = self.charts.par_iter().map(worst_of).collect();
@@ -178,16 +177,16 @@ impl Step {
                 return (Outcome::Undecided([s, lambda]), boxes);
             }
             boxes += 1;
-            let (linear, nearest) = frame.fit(s, lambda);
+            let guide = frame.guide(s, lambda);
             let [s_ball, lambda_ball] = sides.map(|[low, high]| Ball::between(low, high));
-            let determinant = frame.evaluate(s_ball, lambda_ball, &linear).determinant;
+            let determinant = frame.evaluate(s_ball, lambda_ball, &guide).determinant;
             let (low, high) = (determinant.low(), determinant.high());
             if low > 0.0 && low >= limits.sharpness * high {
                 least = least.min(low);
             } else if high < 0.0 {
                 return (Outcome::Negative([s, lambda]), boxes);
             } else {
-                let axis = frame.longer_side(sides, nearest);
+                let axis = frame.longer_side(sides, guide.nearest);
                 for half in [[s, lambda][axis], sides[axis][1]].into_iter().zip([sides[axis][0], [s, lambda][axis]]) {
                     let mut part = sides;
                     part[axis] = [half.1, half.0];

@@ -9,7 +9,7 @@
 use homeo_core::number::Rational;
 use homeo_core::planar::{PlanarDomain, Point2};
 
-use super::number::{Ball, Number};
+use super::number::{Ball, Number, Sight, half_tangent, sine_cosine};
 use super::triangulation::next_vertices;
 
 /// Which edge of the domain a chart touches along `λ = 0`.
@@ -99,6 +99,11 @@ fn scaled<T: Number>(factor: T, a: Vector<T>) -> Vector<T> {
     [factor * a[0], factor * a[1]]
 }
 
+/// The product of complex numbers.
+fn times<T: Number>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
 fn opposite<T: Number>(a: Vector<T>) -> Vector<T> {
     a.map(T::opposite)
 }
@@ -107,7 +112,7 @@ fn of<T: Number>(a: Point2) -> Vector<T> {
     a.map(T::of)
 }
 
-/// A function of `s` and `λ`: its value and its two derivatives.
+/// A function of `s` and `λ`: its value and its derivatives `∂/∂s` and `∂/∂λ - skew s ∂/∂s`.
 #[derive(Clone, Copy)]
 struct Dual<T>([T; 3]);
 
@@ -119,6 +124,12 @@ impl<T: Number> Dual<T> {
         let ([a, a1, a2], [b, b1, b2]) = (self.0, other.0);
         Self([a * b, a1 * b + a * b1, a2 * b + a * b2])
     }
+    fn times_constant(self, factor: T) -> Self {
+        Self(self.0.map(|c| c * factor))
+    }
+    fn with(self, factor: Option<Self>) -> Self {
+        factor.map_or(self, |factor| self.times(factor))
+    }
     fn over(self, other: Self) -> Self {
         let ([a, a1, a2], [b, b1, b2]) = (self.0, other.0);
         let quotient = a / b;
@@ -126,27 +137,25 @@ impl<T: Number> Dual<T> {
     }
 }
 
-/// What of a vertex is seen from a point `x`.
-#[derive(Clone, Copy)]
-struct Sight<T> {
-    /// Unit vector towards it.
-    unit: Vector<T>,
-    /// One over its distance.
-    inverse: T,
-    /// The product of both: the gradient of `log (1 / distance)`; turned by a right angle, that of the direction.
-    pull: Vector<T>,
-}
-
-/// `tan(α / 2)` of the angle from one unit vector to another, by that of two equal formulas whose divisor is not small.
-#[inline(always)]
-fn half_tangent<T: Number>(from: Vector<T>, to: Vector<T>) -> T {
-    let (cosine, sine) = (dot(from, to), cross(from, to));
-    let one = T::of(1.0);
-    if cosine.near() < 0.0 { (one - cosine) / sine } else { sine / (one + cosine) }
-}
-
 /// A linear map near the map: what of it is reproduced exactly is not left to sums of enclosures.
 pub(super) type Linear = [[f64; 2]; 2];
+
+/// What makes enclosures narrow; nothing depends on it in exact arithmetic.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Guide {
+    /// A linear map that takes vertices nearby close to their images.
+    pub linear: Linear,
+    /// The edge, by its first vertex, that is seen at the largest angle, if more than a right one: its weight dominates,
+    /// and is factored out.
+    pub near_edge: Option<usize>,
+    /// Distance of the nearest vertex but `v`.
+    pub nearest: f64,
+}
+
+impl Guide {
+    /// No help.
+    pub const NONE: Self = Self { linear: [[1.0, 0.0], [0.0, 1.0]], near_edge: None, nearest: 1.0 };
+}
 
 /// A chart and all vertices as seen from its own.
 pub(super) struct Frame<'a, T> {
@@ -157,6 +166,8 @@ pub(super) struct Frame<'a, T> {
     pub turn: T,
     /// Of each vertex: where it is, and where it goes, less the same for `v`.
     offsets: Vec<[Vector<T>; 2]>,
+    /// Of each edge, by its first vertex: its vector, reversed and conjugated.
+    edges: Vec<Vector<T>>,
     sights: Vec<Sight<T>>,
     /// Of each edge, by its first vertex: the half tangent and its gradient.
     tangents: Vec<[T; 3]>,
@@ -169,10 +180,10 @@ pub(super) struct Local<T> {
     pub image: Vector<T>,
     /// The determinant of the derivative.
     pub determinant: T,
-    /// `∂f/∂s` and `1/s ∂f/∂λ`: the images of the next two under the derivative.
-    pub columns: [Vector<T>; 2],
-    /// `e` and `q - p`.
+    /// Two vectors with the determinant of `e` and `q - p`.
     pub axes: [Vector<T>; 2],
+    /// Their images under the derivative.
+    pub columns: [Vector<T>; 2],
 }
 
 impl<'a, T: Number> Frame<'a, T> {
@@ -186,10 +197,15 @@ impl<'a, T: Number> Frame<'a, T> {
         ];
         let offset = |(&at, &to): (&Point2, &Point2)| [minus(of(at), v), minus(of(to), image)];
         let offsets: Vec<_> = step.points.iter().zip(&step.images).map(offset).collect();
-        let nothing = Sight { unit: of([0.0; 2]), inverse: T::of(0.0), pull: of([0.0; 2]) };
+        let edge = |(from, &to): (&Point2, &u32)| {
+            let [x, y] = minus(of::<T>(*from), of(step.points[to as usize]));
+            [x, y.opposite()]
+        };
+        let edges = step.points.iter().zip(&step.next).map(edge).collect();
+        let nothing = Sight { unit: of([0.0; 2]), inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0 };
         let sights = vec![nothing; offsets.len()];
         let tangents = vec![[T::of(0.0); 3]; offsets.len()];
-        Self { step, chart, axes, turn: T::of_ball(chart.turn), offsets, sights, tangents }
+        Self { step, chart, axes, turn: T::of_ball(chart.turn), offsets, edges, sights, tangents }
     }
 
     /// Two coordinates of a point: `s`, and `s λ`.
@@ -201,52 +217,73 @@ impl<'a, T: Number> Frame<'a, T> {
 
     /// The map and its derivative at `v + s e(λ)`; unknown where a divisor may be zero.
     ///
-    /// Any `linear` gives the same exact result; enclosures are narrow where it is close to the map.
-    pub fn evaluate(&mut self, s: T, lambda: T, linear: &Linear) -> Local<T> {
-        let across = self.axes[1];
-        let along = plus(self.axes[0], scaled(lambda, across));
+    /// Any guide gives the same exact result.
+    pub fn evaluate(&mut self, s: T, lambda: T, guide: &Guide) -> Local<T> {
+        let along = plus(self.axes[0], scaled(lambda, self.axes[1]));
+        let towards = T::sight(along, along).unit;
         let length = T::length(along[0], along[1]);
-        let direction = [along[0] / length, along[1] / length];
-        self.look(scaled(s, along), opposite(direction));
-        let regular = self.regular_sums(linear);
-        // Chain rule: from gradients in the plane to derivatives by s and λ.
-        let chain = |[value, x, y]: [T; 3]| Dual([value, dot(along, [x, y]), s * dot(across, [x, y])]);
-        let (zero, one) = (T::of(0.0), T::of(1.0));
-        let factor = if self.chart.touch == Touch::Nothing { Dual([one, zero, zero]) } else { Dual([lambda, zero, one]) };
-        let [mut weight, mut first, mut second] = regular.map(|sum| factor.times(chain(sum)));
-        let length = Dual([length, zero, dot(direction, across)]);
-        let mut own = Dual([zero; 3]);
+        // Instead of ∂/∂λ the derivative almost across e, lest determinants be differences of large numbers.
+        let skew = T::of(dot(self.axes[1], along).near() / dot(along, along).near());
+        let across = minus(self.axes[1], scaled(skew, along));
+        let length = Dual([length, T::of(0.0), dot(towards, self.axes[1])]);
+        let view = View { s, along, across, skew, length };
+        self.look(scaled(s, along), opposite(towards), guide.near_edge);
+        let mut edges = Vec::with_capacity(3);
         for touch in [Touch::Next, Touch::Previous] {
-            let tangent = self.tangent_at_vertex(touch, factor, [along, across], length, s);
-            let k = self.neighbour(touch);
-            let Sight { inverse, pull, .. } = self.sights[k];
-            let nearness = Dual([inverse, inverse * dot(pull, along), inverse * (s * dot(pull, across))]);
-            let share = tangent.times(nearness);
-            let [x, y] = self.residual(k, linear).map(|d| Dual([d, zero, zero]));
-            (first, second) = (first.plus(share.times(x)), second.plus(share.times(y)));
-            weight = weight.plus(share);
-            own = own.plus(tangent.over(length));
+            let edge = self.edge_at_vertex(touch);
+            edges.push(self.special_at_vertex(touch, &view, lambda, guide.near_edge == Some(edge)));
         }
-        let total = own.plus(Dual([s, one, zero]).times(weight));
+        if let Some(edge) = guide.near_edge.filter(|&edge| !self.is_at_vertex(edge)) {
+            edges.push(self.special_edge(edge, T::reach(scaled(s, along)), &view));
+        }
+        let [weight, first, second, own] = self.sums(&edges, &view, &guide.linear);
+        let total = own.plus(Dual([s, T::of(1.0), (skew * s).opposite()]).times(weight));
         let rest = [first.over(total), second.over(total)];
-        self.assemble(s, rest, [along, across], linear)
+        self.assemble(&view, rest, &guide.linear)
+    }
+
+    /// Sums of weights, and of weights times residuals, of all vertices but `v`; and the weight of `v`, times `s`. All
+    /// times the factors of all special edges.
+    fn sums(&self, edges: &[Special<T>], view: &View<T>, linear: &Linear) -> [Dual<T>; 4] {
+        let (zero, one) = (T::of(0.0), T::of(1.0));
+        let whole = edges.iter().fold(Dual([one, zero, zero]), |all, edge| all.with(edge.factor));
+        let regular = self.regular_sums(linear);
+        let [mut weight, mut first, mut second] = regular.map(|[value, x, y]| whole.times(view.chain(value, [x, y])));
+        let mut own = Dual([zero; 3]);
+        for (number, edge) in edges.iter().enumerate() {
+            let others = edges.iter().enumerate().filter(|(other, _)| *other != number);
+            let tangent = others.fold(edge.tangent, |product, (_, other)| product.with(other.factor));
+            for k in edge.ends.into_iter().flatten() {
+                let Sight { inverse, pull, .. } = self.sights[k];
+                let share = tangent.times(view.chain(inverse, scaled(inverse, pull)));
+                let [x, y] = self.residual(k, linear);
+                weight = weight.plus(share);
+                first = first.plus(share.times_constant(x));
+                second = second.plus(share.times_constant(y));
+            }
+            if edge.ends.iter().flatten().count() == 1 {
+                own = own.plus(tangent.over(view.length));
+            }
+        }
+        [weight, first, second, own]
     }
 
     /// From `G` to the map: `f = image of v + s (M e + G)`.
-    fn assemble(&self, s: T, rest: [Dual<T>; 2], axes: [Vector<T>; 2], linear: &Linear) -> Local<T> {
+    fn assemble(&self, view: &View<T>, rest: [Dual<T>; 2], linear: &Linear) -> Local<T> {
+        let s = view.s;
         let value: Vector<T> = std::array::from_fn(|k| rest[k].0[0]);
         let by_s: Vector<T> = std::array::from_fn(|k| rest[k].0[0] + s * rest[k].0[1]);
-        let by_lambda: Vector<T> = std::array::from_fn(|k| rest[k].0[2]);
-        let linear_images = axes.map(|axis| apply(linear, axis));
-        let [along, across] = linear_images;
+        let by_across: Vector<T> = std::array::from_fn(|k| rest[k].0[2] - view.skew * rest[k].0[0]);
+        let axes = [view.along, view.across];
+        let [along, across] = axes.map(|axis| apply(linear, axis));
         // det(M e + g, M e' + h), where det(M e, M e') is det M times that of the axes, which is constant.
-        let mixed = cross(along, by_lambda) + cross(by_s, across) + cross(by_s, by_lambda);
+        let mixed = cross(along, by_across) + cross(by_s, across) + cross(by_s, by_across);
         let own = cross(of::<T>(linear[0]), of(linear[1]));
         let at = of::<T>(self.step.images[self.chart.corners[0] as usize]);
         Local {
             image: plus(at, scaled(s, plus(along, value))),
             determinant: own + mixed / self.turn,
-            columns: [plus(along, by_s), plus(across, by_lambda)],
+            columns: [plus(along, by_s), plus(across, by_across)],
             axes,
         }
     }
@@ -254,6 +291,16 @@ impl<'a, T: Number> Frame<'a, T> {
     fn neighbour(&self, touch: Touch) -> usize {
         let v = self.chart.corners[0] as usize;
         (if touch == Touch::Next { self.step.next[v] } else { self.step.previous[v] }) as usize
+    }
+
+    /// The number of an edge at `v`: that of its first vertex.
+    fn edge_at_vertex(&self, touch: Touch) -> usize {
+        if touch == Touch::Next { self.chart.corners[0] as usize } else { self.neighbour(touch) }
+    }
+
+    fn is_at_vertex(&self, edge: usize) -> bool {
+        let v = self.chart.corners[0] as usize;
+        edge == v || self.step.next[edge] as usize == v
     }
 
     /// How far a vertex misses its image under the linear map.
@@ -264,30 +311,32 @@ impl<'a, T: Number> Frame<'a, T> {
     }
 
     /// Looks at all vertices and edges from `v + offset`; at `v` itself in the direction `towards`.
-    fn look(&mut self, offset: Vector<T>, towards: Vector<T>) {
+    fn look(&mut self, offset: Vector<T>, towards: Vector<T>, near_edge: Option<usize>) {
         let v = self.chart.corners[0] as usize;
         for (sight, [at, _]) in self.sights.iter_mut().zip(&self.offsets) {
-            let there = minus(*at, offset);
-            let inverse = T::of(1.0) / T::length(there[0], there[1]);
-            let unit = scaled(inverse, there);
-            *sight = Sight { unit, inverse, pull: scaled(inverse, unit) };
+            *sight = T::sight(minus(*at, offset), offset);
         }
-        self.sights[v] = Sight { unit: towards, inverse: T::of(0.0), pull: of([0.0; 2]) };
-        let half = T::of(0.5);
+        self.sights[v] = Sight { unit: towards, inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0 };
+        let (half, reach) = (T::of(0.5), T::reach(offset));
         for (i, tangent) in self.tangents.iter_mut().enumerate() {
             let k = self.step.next[i] as usize;
             if i == v || k == v {
                 continue;
             }
+            if near_edge == Some(i) {
+                *tangent = [T::of(0.0); 3];
+                continue;
+            }
             let (from, to) = (&self.sights[i], &self.sights[k]);
-            let t = half_tangent(from.unit, to.unit);
+            // The difference of pulls 1 / conj(z) as a product: far edges are seen to be small.
+            let turning = times(times(from.pull, to.pull), self.edges[i]);
+            let t = T::half_tangent(from, to, turning, reach);
             let rate = half + half * (t * t);
-            let turning = minus(to.pull, from.pull);
             *tangent = [t, rate * turning[1], (rate * turning[0]).opposite()];
         }
     }
 
-    /// Sums over all other vertices, of the edges not at `v` only: of the weights, and of weights times residuals; each
+    /// Sums over all other vertices, of edges that are not special only: of the weights, and of weights times residuals; each
     /// with its gradient in the plane.
     fn regular_sums(&self, linear: &Linear) -> [[T; 3]; 3] {
         let v = self.chart.corners[0] as usize;
@@ -313,38 +362,86 @@ impl<'a, T: Number> Frame<'a, T> {
         sums
     }
 
-    /// The half tangent of an edge at `v`, times the factor of the chart, which cancels if the chart touches the edge.
-    fn tangent_at_vertex(
-        &self,
-        touch: Touch,
-        factor: Dual<T>,
-        [along, across]: [Vector<T>; 2],
-        length: Dual<T>,
-        s: T,
-    ) -> Dual<T> {
+    /// An edge that does not end at `v`, times the sine of its angle.
+    fn special_edge(&self, edge: usize, reach: f64, view: &View<T>) -> Special<T> {
+        let other = self.step.next[edge] as usize;
+        let (from, to) = (&self.sights[edge], &self.sights[other]);
+        let turning = times(times(from.pull, to.pull), self.edges[edge]);
+        let [sine, cosine] = T::sine_cosine(from, to, turning, reach);
+        let angle = view.chain(T::of(0.0), [turning[1], turning[0].opposite()]);
+        Special::near(sine, cosine, angle, [Some(edge), Some(other)])
+    }
+
+    /// An edge that ends at `v`; if the chart touches it, times `λ`, which cancels.
+    fn special_at_vertex(&self, touch: Touch, view: &View<T>, lambda: T, is_near: bool) -> Special<T> {
         let k = self.neighbour(touch);
-        let Sight { unit, inverse, pull } = self.sights[k];
+        let ends = [Some(k), None];
+        let Sight { unit, inverse, pull, .. } = self.sights[k];
+        let View { s, along, across, skew, length: Dual([size, _, growth]) } = *view;
         if self.chart.touch == touch {
             // (|e| r + e . there) / |2 turn|.
             let there = minus(self.offsets[k][0], scaled(s, along));
             let distance = T::of(1.0) / inverse;
-            let [size, _, growth] = length.0;
             let value = size * distance + dot(along, there);
-            let by_s = opposite([size * dot(unit, along), size * size]);
-            let by_lambda = growth * distance - s * (size * dot(unit, across)) + dot(across, there) - s * dot(along, across);
+            let by_s = (size * dot(unit, along) + size * size).opposite();
+            let side = self.axes[1];
+            let by_lambda = growth * distance - s * (size * dot(unit, side)) + dot(side, there) - s * dot(along, side);
+            let by_across = by_lambda - skew * (s * by_s);
             let sign = if touch == Touch::Next { 2.0 } else { -2.0 };
             let divisor = T::of(sign) * self.turn;
-            return Dual([value / divisor, (by_s[0] + by_s[1]) / divisor, by_lambda / divisor]);
+            let factor = Some(Dual([lambda, T::of(0.0), T::of(1.0)]));
+            return Special { factor, tangent: Dual([value, by_s, by_across].map(|c| c / divisor)), ends };
         }
         let towards = self.sights[self.chart.corners[0] as usize].unit;
-        let (t, sign) = match touch {
-            Touch::Next => (half_tangent(towards, unit), T::of(0.5)),
-            _ => (half_tangent(unit, towards), T::of(-0.5)),
-        };
-        let rate = sign + sign * (t * t);
-        let size = length.0[0];
         let turning = s * cross(across, pull) - self.turn / (size * size);
-        factor.times(Dual([t, rate * cross(along, pull), rate * turning]))
+        let angle = Dual([T::of(0.0), cross(along, pull), turning]);
+        let (from, to, angle) = match touch {
+            Touch::Next => (towards, unit, angle),
+            _ => (unit, towards, Dual(angle.0.map(T::opposite))),
+        };
+        if is_near {
+            let [sine, cosine] = sine_cosine(from, to);
+            return Special::near(sine, cosine, angle, ends);
+        }
+        let t = half_tangent(from, to);
+        let rate = T::of(0.5) + T::of(0.5) * (t * t);
+        Special { factor: None, tangent: Dual([t, rate * angle.0[1], rate * angle.0[2]]), ends }
+    }
+}
+
+/// An edge that is treated by itself: its half tangent times a factor that makes it smooth.
+struct Special<T> {
+    /// What all other edges are multiplied by; `None` for one.
+    factor: Option<Dual<T>>,
+    /// The half tangent times the factor.
+    tangent: Dual<T>,
+    /// Its ends but `v`.
+    ends: [Option<usize>; 2],
+}
+
+impl<T: Number> Special<T> {
+    /// With the sine as factor: `sin α tan(α / 2) = 1 - cos α`.
+    fn near(sine: T, cosine: T, Dual([_, by_s, by_lambda]): Dual<T>, ends: [Option<usize>; 2]) -> Self {
+        let factor = Some(Dual([sine, cosine * by_s, cosine * by_lambda]));
+        Self { factor, tangent: Dual([T::of(1.0) - cosine, sine * by_s, sine * by_lambda]), ends }
+    }
+}
+
+/// Where one looks from.
+struct View<T> {
+    s: T,
+    /// `e`, and `q - p - skew e`.
+    along: Vector<T>,
+    across: Vector<T>,
+    skew: T,
+    /// Of `e`.
+    length: Dual<T>,
+}
+
+impl<T: Number> View<T> {
+    /// A function of the plane by `s` and `λ`.
+    fn chain(&self, value: T, gradient: Vector<T>) -> Dual<T> {
+        Dual([value, dot(self.along, gradient), self.s * dot(self.across, gradient)])
     }
 }
 
@@ -353,11 +450,34 @@ fn apply<T: Number>(linear: &Linear, vector: Vector<T>) -> Vector<T> {
 }
 
 impl Frame<'_, Ball> {
-    /// A linear map that takes vertices near a point of the chart close to their images, and how near the nearest vertex
-    /// but `v` is. Least squares, weighted by the inverse fourth power of distances.
-    pub fn fit(&self, s: f64, lambda: f64) -> (Linear, f64) {
+    /// A guide for the surroundings of a point of the chart.
+    pub fn guide(&self, s: f64, lambda: f64) -> Guide {
         let axis = |axis: usize, k: usize| self.axes[axis][k].middle;
         let at: Point2 = std::array::from_fn(|k| s * (axis(0, k) + lambda * axis(1, k)));
+        let there = |i: usize| -> Point2 { std::array::from_fn(|k| self.offsets[i][0][k].middle - at[k]) };
+        let (linear, nearest) = self.fit(at);
+        let mut near = (0.0, None);
+        for i in 0..self.offsets.len() {
+            let k = self.step.next[i] as usize;
+            let (a, b) = (there(i), there(k));
+            let product = dot(a, b);
+            if product < 0.0 {
+                let square = product * product / (dot(a, a) * dot(b, b));
+                let is_touched = match self.chart.touch {
+                    Touch::Nothing => false,
+                    touch => self.edge_at_vertex(touch) == i,
+                };
+                if square > near.0 && !is_touched {
+                    near = (square, Some(i));
+                }
+            }
+        }
+        Guide { linear, near_edge: near.1, nearest }
+    }
+
+    /// A linear map that takes vertices near a point close to their images, and how near the nearest vertex but `v` is.
+    /// Least squares, weighted by the inverse fourth power of distances.
+    fn fit(&self, at: Point2) -> (Linear, f64) {
         let v = self.chart.corners[0] as usize;
         let mut nearest = f64::INFINITY;
         let (mut normal, mut mixed) = ([0.0; 3], [[0.0; 2]; 2]);

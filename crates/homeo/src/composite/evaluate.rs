@@ -2,7 +2,7 @@
 
 use homeo_core::planar::Point2;
 
-use super::chart::{Chart, Frame, Local, Step, cross};
+use super::chart::{Chart, Frame, Guide, Local, Step, cross};
 use super::number::{Ball, Number};
 
 /// A box of the plane.
@@ -45,7 +45,7 @@ impl Step {
     pub(super) fn value(&self, point: Point2) -> (Point2, Jacobian) {
         let (chart, [s, lambda]) = self.locate(point);
         let mut frame = Frame::<f64>::new(self, chart);
-        let local = frame.evaluate(s, lambda, &[[1.0, 0.0], [0.0, 1.0]]);
+        let local = frame.evaluate(s, lambda, &Guide::NONE);
         (local.image, derivative(&local, frame.turn))
     }
 
@@ -72,8 +72,8 @@ impl Step {
     pub(super) fn enclose(&self, at: BallPoint) -> BallPoint {
         let mut hull: Option<BallPoint> = None;
         self.meet(at, |frame, sides| {
-            let (linear, _) = frame.fit(sides[0].near(), sides[1].near());
-            let image = frame.evaluate(sides[0], sides[1], &linear).image;
+            let guide = frame.guide(sides[0].near(), sides[1].near());
+            let image = frame.evaluate(sides[0], sides[1], &guide).image;
             hull = Some(hull.map_or(image, |hull| [hull[0].hull(image[0]), hull[1].hull(image[1])]));
         });
         hull.unwrap_or([Ball::UNKNOWN; 2])
@@ -83,8 +83,8 @@ impl Step {
     pub(super) fn determinant_at(&self, point: Point2) -> Option<Ball> {
         let mut found: Option<Ball> = None;
         self.meet(point.map(Ball::of), |frame, sides| {
-            let (linear, _) = frame.fit(sides[0].near(), sides[1].near());
-            let here = frame.evaluate(sides[0], sides[1], &linear).determinant;
+            let guide = frame.guide(sides[0].near(), sides[1].near());
+            let here = frame.evaluate(sides[0], sides[1], &guide).determinant;
             found = Some(found.map_or(here, |found| found.hull(here)));
         });
         found
@@ -95,8 +95,8 @@ impl Step {
     pub(super) fn inverse_rate(&self, at: BallPoint) -> f64 {
         let mut rate = 0.0;
         self.meet(at, |frame, sides| {
-            let (linear, _) = frame.fit(sides[0].near(), sides[1].near());
-            let here = inverse_norm(&frame.evaluate(sides[0], sides[1], &linear), frame.turn);
+            let guide = frame.guide(sides[0].near(), sides[1].near());
+            let here = inverse_norm(&frame.evaluate(sides[0], sides[1], &guide), frame.turn);
             rate = if here > rate || here.is_nan() { here } else { rate };
         });
         rate

@@ -14,10 +14,48 @@ pub(super) trait Number:
     fn of_ball(value: Ball) -> Self;
     /// Length of a vector.
     fn length(x: Self, y: Self) -> Self;
+    /// What is seen of a vertex that lies by `vector`, not zero, from the point one looks from; of which `common` is what
+    /// is the same for all vertices: where the point is.
+    fn sight(vector: [Self; 2], common: [Self; 2]) -> Sight<Self>;
+    /// `tan(α / 2)` of the angle from one vertex to another, seen from a point that is within `reach` of the middle of
+    /// where it may be, where `turning` is the difference of pulls: as long as the gradient of the angle.
+    fn half_tangent(from: &Sight<Self>, to: &Sight<Self>, turning: [Self; 2], reach: f64) -> Self;
+    /// Sine and cosine of the same angle.
+    fn sine_cosine(from: &Sight<Self>, to: &Sight<Self>, turning: [Self; 2], reach: f64) -> [Self; 2];
+    /// How far from the middle a vector may be.
+    fn reach(vector: [Self; 2]) -> f64;
     /// A number near it, by which one of two equal formulas is chosen.
     fn near(self) -> f64;
+
     /// Its opposite.
     fn opposite(self) -> Self;
+}
+
+/// What of a vertex is seen from a point.
+#[derive(Clone, Copy)]
+pub(super) struct Sight<T> {
+    /// Unit vector towards it.
+    pub unit: [T; 2],
+    /// One over its distance.
+    pub inverse: T,
+    /// The product of both: the gradient of `log (1 / distance)`; turned by a right angle, that of the direction.
+    pub pull: [T; 2],
+    /// By how large an angle its direction may be off for other reasons than where the point is.
+    pub slack: f64,
+}
+
+/// Sine and cosine of the angle from one unit vector to another.
+#[inline(always)]
+pub(super) fn sine_cosine<T: Number>(from: [T; 2], to: [T; 2]) -> [T; 2] {
+    [from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]]
+}
+
+/// `tan(α / 2)` of the angle from one unit vector to another, by that of two equal formulas whose divisor is not small.
+#[inline(always)]
+pub(super) fn half_tangent<T: Number>(from: [T; 2], to: [T; 2]) -> T {
+    let [sine, cosine] = sine_cosine(from, to);
+    let one = T::of(1.0);
+    if cosine.near() < 0.0 { (one - cosine) / sine } else { sine / (one + cosine) }
 }
 
 impl Number for f64 {
@@ -29,6 +67,21 @@ impl Number for f64 {
     }
     fn length(x: Self, y: Self) -> Self {
         (x * x + y * y).sqrt()
+    }
+    fn sight([x, y]: [Self; 2], _: [Self; 2]) -> Sight<Self> {
+        let inverse = 1.0 / Self::length(x, y);
+        let unit = [x * inverse, y * inverse];
+        Sight { unit, inverse, pull: unit.map(|c| c * inverse), slack: 0.0 }
+    }
+    #[inline(always)]
+    fn half_tangent(from: &Sight<Self>, to: &Sight<Self>, _: [Self; 2], _: f64) -> Self {
+        half_tangent(from.unit, to.unit)
+    }
+    fn sine_cosine(from: &Sight<Self>, to: &Sight<Self>, _: [Self; 2], _: f64) -> [Self; 2] {
+        sine_cosine(from.unit, to.unit)
+    }
+    fn reach(_: [Self; 2]) -> f64 {
+        0.0
     }
     fn near(self) -> f64 {
         self
@@ -173,6 +226,61 @@ impl Number for Ball {
         let radius = (x.radius * x.radius + y.radius * y.radius).sqrt() + 1e-150 + middle * (2.0 * f64::EPSILON);
         Self::new(middle, radius)
     }
+    /// A disk of vectors round `m`, of radius `d`, with `|m| = r > d`: directions differ from that of `m` by an angle whose
+    /// sine is `d / r` at most, and `v / |v|^2`, the inversion, from that of `m` by `|v - m| / (|v| |m|)`.
+    #[inline(always)]
+    fn sight([x, y]: [Self; 2], common: [Self; 2]) -> Sight<Self> {
+        let reach = Self::reach([x, y]);
+        let length = (x.middle * x.middle + y.middle * y.middle).sqrt();
+        let least = (length - reach) * (1.0 - 16.0 * f64::EPSILON) - 1e-150;
+        if !(least > 0.0 && length < 1e150) {
+            return Sight { unit: [Self::UNKNOWN; 2], inverse: Self::UNKNOWN, pull: [Self::UNKNOWN; 2], slack: f64::NAN };
+        }
+        let inverse = 1.0 / length;
+        let unit = [x.middle * inverse, y.middle * inverse];
+        // Middles are rounded four times.
+        let relative = reach / least + 8.0 * f64::EPSILON;
+        let turned = reach * inverse + 8.0 * f64::EPSILON;
+        let rounded = |value: f64, other: f64| {
+            Self::new(value, (other.abs() + value.abs() * turned) * turned + 8.0 * f64::EPSILON)
+        };
+        let own = (x.radius - common[0].radius).abs() + (y.radius - common[1].radius).abs();
+        Sight {
+            unit: [rounded(unit[0], unit[1]), rounded(unit[1], unit[0])],
+            inverse: Self::new(inverse, relative * inverse),
+            pull: unit.map(|c| Self::new(c * inverse, relative * inverse)),
+            slack: (own + reach * (4.0 * f64::EPSILON)) / least,
+        }
+    }
+    #[inline(always)]
+    fn half_tangent(from: &Sight<Self>, to: &Sight<Self>, turning: [Self; 2], reach: f64) -> Self {
+        let [[a, b], [c, d]] = [from, to].map(|sight| sight.unit.map(|c| c.middle));
+        let (cosine, sine) = (a * c + b * d, a * d - b * c);
+        let middle = if cosine < 0.0 { (1.0 - cosine) / sine } else { sine / (1.0 + cosine) };
+        let half = 0.5 * spread(from, to, turning, reach);
+        if !(half < 0.5) {
+            return Self::UNKNOWN;
+        }
+        // tan h <= h (1 + h^2 / 2) for h < 1/2; |tan(a + h) - tan a| <= (1 + tan^2 a) tan h / (1 - |tan a| tan h).
+        let tangent = half * (1.0 + 0.5 * half * half) * UPWARD;
+        let left = 1.0 - middle.abs() * tangent * UPWARD;
+        if !(left > 0.0) {
+            return Self::UNKNOWN;
+        }
+        Self::new(middle, (1.0 + middle * middle) * tangent / (left * (1.0 - 8.0 * f64::EPSILON)) )
+    }
+    /// `|sin(a + h) - sin a| <= |cos a| h + |sin a| h^2 / 2`, and the other way round.
+    #[inline(always)]
+    fn sine_cosine(from: &Sight<Self>, to: &Sight<Self>, turning: [Self; 2], reach: f64) -> [Self; 2] {
+        let [sine, cosine] = sine_cosine(from.unit.map(|c| c.middle), to.unit.map(|c| c.middle));
+        let angle = spread(from, to, turning, reach);
+        let ball = |value: f64, other: f64| Self::new(value, (other.abs() + value.abs() * angle) * angle);
+        [ball(sine, cosine), ball(cosine, sine)]
+    }
+    #[inline(always)]
+    fn reach([x, y]: [Self; 2]) -> f64 {
+        (x.radius * x.radius + y.radius * y.radius).sqrt() * UPWARD + 1e-150
+    }
     #[inline(always)]
     fn near(self) -> f64 {
         self.middle
@@ -184,6 +292,13 @@ impl Number for Ball {
 }
 
 
+
+/// By how much the angle from one vertex to another may differ from the one between the middles, and this be rounded.
+#[inline(always)]
+fn spread(from: &Sight<Ball>, to: &Sight<Ball>, turning: [Ball; 2], reach: f64) -> f64 {
+    let size = (turning[0].size() * turning[0].size() + turning[1].size() * turning[1].size()).sqrt();
+    (size * reach + from.slack + to.slack + 64.0 * f64::EPSILON) * UPWARD
+}
 
 #[cfg(test)]
 mod tests {
