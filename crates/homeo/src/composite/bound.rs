@@ -53,6 +53,15 @@ pub enum JacobianVerdict {
     },
 }
 
+impl JacobianVerdict {
+    /// How many boxes were evaluated.
+    pub fn boxes(&self) -> u64 {
+        match *self {
+            Self::Positive { boxes, .. } | Self::Negative { boxes, .. } | Self::Undecided { boxes, .. } => boxes,
+        }
+    }
+}
+
 /// Bounds the Jacobian determinant of the mean value map that sends the vertices of a domain to `images`, both numbered
 /// ring after ring, from below.
 ///

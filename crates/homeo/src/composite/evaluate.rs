@@ -41,6 +41,18 @@ impl Step {
         [2.0 * along + across, 3.0 * across]
     }
 
+    /// A point of the domain near a point, but for rounding.
+    pub(super) fn nearby(&self, point: Point2) -> Point2 {
+        let (chart, at) = self.locate(point);
+        self.place(chart, at)
+    }
+
+    /// A point inside the domain near a point.
+    pub(super) fn centre_near(&self, point: Point2) -> Point2 {
+        let (chart, _) = self.locate(point);
+        self.place(chart, [0.5, 0.5])
+    }
+
     /// Image of a point, and the derivative there; at a vertex the derivative along one chart.
     pub(super) fn value(&self, point: Point2) -> (Point2, Jacobian) {
         let (chart, [s, lambda]) = self.locate(point);
