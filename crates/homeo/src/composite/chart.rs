@@ -148,13 +148,15 @@ pub(super) struct Guide {
     /// The edge, by its first vertex, that is seen at the largest angle, if more than a right one: its weight dominates,
     /// and is factored out.
     pub near_edge: Option<usize>,
-    /// Distance of the nearest vertex but `v`.
+    /// The nearest vertex but `v`, whose distance is factored out as well.
+    pub near_vertex: Option<usize>,
+    /// How near it is.
     pub nearest: f64,
 }
 
 impl Guide {
     /// No help.
-    pub const NONE: Self = Self { linear: [[1.0, 0.0], [0.0, 1.0]], near_edge: None, nearest: 1.0 };
+    pub const NONE: Self = Self { linear: [[1.0, 0.0], [0.0, 1.0]], near_edge: None, near_vertex: None, nearest: 1.0 };
 }
 
 /// A chart and all vertices as seen from its own.
@@ -236,7 +238,7 @@ impl<'a, T: Number> Frame<'a, T> {
         if let Some(edge) = guide.near_edge.filter(|&edge| !self.is_at_vertex(edge)) {
             edges.push(self.special_edge(edge, T::reach(scaled(s, along)), &view));
         }
-        let [weight, first, second, own] = self.sums(&edges, &view, &guide.linear);
+        let [weight, first, second, own] = self.sums(&edges, &view, guide);
         let total = own.plus(Dual([s, T::of(1.0), (skew * s).opposite()]).times(weight));
         let rest = [first.over(total), second.over(total)];
         self.assemble(&view, rest, &guide.linear)
@@ -244,25 +246,35 @@ impl<'a, T: Number> Frame<'a, T> {
 
     /// Sums of weights, and of weights times residuals, of all vertices but `v`; and the weight of `v`, times `s`. All
     /// times the factors of all special edges.
-    fn sums(&self, edges: &[Special<T>], view: &View<T>, linear: &Linear) -> [Dual<T>; 4] {
+    fn sums(&self, edges: &[Special<T>], view: &View<T>, guide: &Guide) -> [Dual<T>; 4] {
         let (zero, one) = (T::of(0.0), T::of(1.0));
+        let distance = guide.near_vertex.map(|vertex| {
+            let [x, y] = minus(self.offsets[vertex][0], scaled(view.s, view.along));
+            view.chain(T::length(x, y), opposite(self.sights[vertex].unit))
+        });
         let whole = edges.iter().fold(Dual([one, zero, zero]), |all, edge| all.with(edge.factor));
-        let regular = self.regular_sums(linear);
-        let [mut weight, mut first, mut second] = regular.map(|[value, x, y]| whole.times(view.chain(value, [x, y])));
+        let [others, near] = self.regular_sums(guide);
+        let chained = |[value, x, y]: [T; 3]| view.chain(value, [x, y]);
+        let regular = |k: usize| whole.times(chained(others[k]).with(distance).plus(chained(near[k])));
+        let [mut weight, mut first, mut second] = [regular(0), regular(1), regular(2)];
         let mut own = Dual([zero; 3]);
         for (number, edge) in edges.iter().enumerate() {
-            let others = edges.iter().enumerate().filter(|(other, _)| *other != number);
-            let tangent = others.fold(edge.tangent, |product, (_, other)| product.with(other.factor));
+            let factors = edges.iter().enumerate().filter(|(other, _)| *other != number);
+            let tangent = factors.fold(edge.tangent, |product, (_, other)| product.with(other.factor));
             for k in edge.ends.into_iter().flatten() {
                 let Sight { inverse, pull, .. } = self.sights[k];
-                let share = tangent.times(view.chain(inverse, scaled(inverse, pull)));
-                let [x, y] = self.residual(k, linear);
+                let share = if guide.near_vertex == Some(k) {
+                    tangent
+                } else {
+                    tangent.times(view.chain(inverse, scaled(inverse, pull)).with(distance))
+                };
+                let [x, y] = self.residual(k, &guide.linear);
                 weight = weight.plus(share);
                 first = first.plus(share.times_constant(x));
                 second = second.plus(share.times_constant(y));
             }
             if edge.ends.iter().flatten().count() == 1 {
-                own = own.plus(tangent.over(view.length));
+                own = own.plus(tangent.over(view.length).with(distance));
             }
         }
         [weight, first, second, own]
@@ -337,22 +349,25 @@ impl<'a, T: Number> Frame<'a, T> {
     }
 
     /// Sums over all other vertices, of edges that are not special only: of the weights, and of weights times residuals; each
-    /// with its gradient in the plane.
-    fn regular_sums(&self, linear: &Linear) -> [[T; 3]; 3] {
+    /// with its gradient in the plane. First those of all vertices but a near one, then those of this, times its distance.
+    fn regular_sums(&self, guide: &Guide) -> [[[T; 3]; 3]; 2] {
         let v = self.chart.corners[0] as usize;
-        let mut sums = [[T::of(0.0); 3]; 3];
+        let mut sums = [[[T::of(0.0); 3]; 3]; 2];
         for (i, sight) in self.sights.iter().enumerate() {
             if i == v {
                 continue;
             }
             let (before, after) = (&self.tangents[self.step.previous[i] as usize], &self.tangents[i]);
-            let tangent = before[0] + after[0];
-            let weight = [
-                sight.inverse * tangent,
-                sight.inverse * (before[1] + after[1] + tangent * sight.pull[0]),
-                sight.inverse * (before[2] + after[2] + tangent * sight.pull[1]),
-            ];
-            let [x, y] = self.residual(i, linear);
+            let tangent: [T; 3] = std::array::from_fn(|k| before[k] + after[k]);
+            let is_near = guide.near_vertex == Some(i);
+            let weight = if is_near {
+                tangent
+            } else {
+                let [value, x, y] = tangent;
+                [value, x + value * sight.pull[0], y + value * sight.pull[1]].map(|c| sight.inverse * c)
+            };
+            let [x, y] = self.residual(i, &guide.linear);
+            let sums = &mut sums[usize::from(is_near)];
             for k in 0..3 {
                 sums[0][k] = sums[0][k] + weight[k];
                 sums[1][k] = sums[1][k] + weight[k] * x;
@@ -455,7 +470,7 @@ impl Frame<'_, Ball> {
         let axis = |axis: usize, k: usize| self.axes[axis][k].middle;
         let at: Point2 = std::array::from_fn(|k| s * (axis(0, k) + lambda * axis(1, k)));
         let there = |i: usize| -> Point2 { std::array::from_fn(|k| self.offsets[i][0][k].middle - at[k]) };
-        let (linear, nearest) = self.fit(at);
+        let (linear, near_vertex, nearest) = self.fit(at);
         let mut near = (0.0, None);
         for i in 0..self.offsets.len() {
             let k = self.step.next[i] as usize;
@@ -472,14 +487,14 @@ impl Frame<'_, Ball> {
                 }
             }
         }
-        Guide { linear, near_edge: near.1, nearest }
+        Guide { linear, near_edge: near.1, near_vertex, nearest }
     }
 
     /// A linear map that takes vertices near a point close to their images, and how near the nearest vertex but `v` is.
     /// Least squares, weighted by the inverse fourth power of distances.
-    fn fit(&self, at: Point2) -> (Linear, f64) {
+    fn fit(&self, at: Point2) -> (Linear, Option<usize>, f64) {
         let v = self.chart.corners[0] as usize;
-        let mut nearest = f64::INFINITY;
+        let mut nearest = (f64::INFINITY, None);
         let (mut normal, mut mixed) = ([0.0; 3], [[0.0; 2]; 2]);
         for (i, &[offset, image]) in self.offsets.iter().enumerate() {
             if i == v {
@@ -487,7 +502,9 @@ impl Frame<'_, Ball> {
             }
             let ([x, y], image) = (offset.map(|c| c.middle), image.map(|c| c.middle));
             let square = (x - at[0]) * (x - at[0]) + (y - at[1]) * (y - at[1]);
-            nearest = nearest.min(square);
+            if square < nearest.0 {
+                nearest = (square, Some(i));
+            }
             let weight = 1.0 / (square * square);
             let (wx, wy) = (weight * x, weight * y);
             normal = [normal[0] + wx * x, normal[1] + wx * y, normal[2] + wy * y];
@@ -504,6 +521,6 @@ impl Frame<'_, Ball> {
         let row = |m: [f64; 2]| [(m[0] * c - m[1] * b) / determinant, (m[1] * a - m[0] * b) / determinant];
         let linear = mixed.map(row);
         let is_good = linear.iter().flatten().all(|x| x.is_finite());
-        (if is_good { linear } else { [[1.0, 0.0], [0.0, 1.0]] }, nearest.sqrt())
+        (if is_good { linear } else { Guide::NONE.linear }, nearest.1, nearest.0.sqrt())
     }
 }
