@@ -131,7 +131,9 @@ impl Step {
                 match outcome {
                     Outcome::Positive(here) => least = least.min(here),
                     Outcome::Negative(at) => return self.witnessed(chart, at, boxes),
-                    Outcome::Undecided(at) => return JacobianVerdict::Undecided { point: self.place(chart, at), boxes },
+                    Outcome::Undecided(at) => {
+                        return JacobianVerdict::Undecided { point: self.place(chart, at), boxes };
+                    }
                 }
             }
         }

@@ -193,10 +193,7 @@ impl<'a, T: Number> Frame<'a, T> {
         let [v, p, q] = chart.corners.map(|corner| of::<T>(step.points[corner as usize]));
         let image = of::<T>(step.images[chart.corners[0] as usize]);
         let (side, other) = (minus(p, v), minus(q, v));
-        let axes = [
-            scaled(T::of(0.5), side),
-            std::array::from_fn(|k| (T::of(2.0) * other[k] - side[k]) / T::of(6.0)),
-        ];
+        let axes = [scaled(T::of(0.5), side), std::array::from_fn(|k| (T::of(2.0) * other[k] - side[k]) / T::of(6.0))];
         let offset = |(&at, &to): (&Point2, &Point2)| [minus(of(at), v), minus(of(to), image)];
         let offsets: Vec<_> = step.points.iter().zip(&step.images).map(offset).collect();
         let edge = |(from, &to): (&Point2, &u32)| {

@@ -8,6 +8,9 @@ use super::number::{Ball, Number};
 /// A box of the plane.
 pub(super) type BallPoint = [Ball; 2];
 
+/// So many parts of a chart are enclosed each by itself where a box is as large as its distance from the vertex.
+const DIRECTIONS: u32 = 32;
+
 /// The derivative of a map at a point: rows are the gradients of the two coordinates.
 pub type Jacobian = [[f64; 2]; 2];
 
@@ -74,8 +77,18 @@ impl Step {
                 continue;
             }
             let mut frame = Frame::<Ball>::new(self, chart);
-            if let Some(sides) = part_of_chart(frame.coordinates(at)) {
-                each(&mut frame, sides);
+            let Some([s, lambda]) = part_of_chart(frame.coordinates(at)) else { continue };
+            // Where the box is large as seen from the vertex, directions are taken one after the other.
+            if lambda.radius <= 0.5 / f64::from(DIRECTIONS) {
+                each(&mut frame, [s, lambda]);
+                continue;
+            }
+            let (low, width) = (lambda.low(), 2.0 * lambda.radius / f64::from(DIRECTIONS));
+            for part in 0..DIRECTIONS {
+                let from = low + width * f64::from(part);
+                // Overlapping, so that rounding leaves nothing out.
+                let lambda = Ball::between((from - 1e-9).max(0.0), (from + width + 1e-9).min(1.0));
+                each(&mut frame, [s, lambda]);
             }
         }
     }

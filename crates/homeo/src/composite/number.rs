@@ -154,7 +154,11 @@ impl Ball {
 
     /// What is known to be in both; unknown if one is. The balls must have a number in common.
     pub fn meet(self, low: f64, high: f64) -> Self {
-        if self.radius.is_nan() { self } else { Self::between(self.low().clamp(low, high), self.high().clamp(low, high)) }
+        if self.radius.is_nan() {
+            self
+        } else {
+            Self::between(self.low().clamp(low, high), self.high().clamp(low, high))
+        }
     }
 
     /// A ball that holds both; unknown if one is.
@@ -234,7 +238,12 @@ impl Number for Ball {
         let length = (x.middle * x.middle + y.middle * y.middle).sqrt();
         let least = (length - reach) * (1.0 - 16.0 * f64::EPSILON) - 1e-150;
         if !(least > 0.0 && length < 1e150) {
-            return Sight { unit: [Self::UNKNOWN; 2], inverse: Self::UNKNOWN, pull: [Self::UNKNOWN; 2], slack: f64::NAN };
+            return Sight {
+                unit: [Self::UNKNOWN; 2],
+                inverse: Self::UNKNOWN,
+                pull: [Self::UNKNOWN; 2],
+                slack: f64::NAN,
+            };
         }
         let inverse = 1.0 / length;
         let unit = [x.middle * inverse, y.middle * inverse];
@@ -267,7 +276,7 @@ impl Number for Ball {
         if !(left > 0.0) {
             return Self::UNKNOWN;
         }
-        Self::new(middle, (1.0 + middle * middle) * tangent / (left * (1.0 - 8.0 * f64::EPSILON)) )
+        Self::new(middle, (1.0 + middle * middle) * tangent / (left * (1.0 - 8.0 * f64::EPSILON)))
     }
     /// `|sin(a + h) - sin a| <= |cos a| h + |sin a| h^2 / 2`, and the other way round.
     #[inline(always)]
@@ -291,8 +300,6 @@ impl Number for Ball {
     }
 }
 
-
-
 /// By how much the angle from one vertex to another may differ from the one between the middles, and this be rounded.
 #[inline(always)]
 fn spread(from: &Sight<Ball>, to: &Sight<Ball>, turning: [Ball; 2], reach: f64) -> f64 {
@@ -311,9 +318,8 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             state >> 11
         };
-        let mut made: Vec<f64> = (0..60)
-            .map(|_| (next() as f64 / 2f64.powi(52) - 1.0) * 2f64.powi((next() % 400) as i32 - 200))
-            .collect();
+        let mut made: Vec<f64> =
+            (0..60).map(|_| (next() as f64 / 2f64.powi(52) - 1.0) * 2f64.powi((next() % 400) as i32 - 200)).collect();
         made.extend([0.0, 1.0, -3.0, f64::MIN_POSITIVE, 5e-324, 1e300, -1e300]);
         made
     }
@@ -360,7 +366,9 @@ mod tests {
         let unknown = Ball::of(1.0) / Ball { middle: 1.0, radius: 1.0 };
         assert!(unknown.radius.is_nan());
         for other in [Ball::of(0.0), Ball::of(1e300), Ball { middle: 1.0, radius: f64::INFINITY }] {
-            for result in [unknown + other, other - unknown, unknown * other, other / unknown, Ball::length(unknown, other)] {
+            for result in
+                [unknown + other, other - unknown, unknown * other, other / unknown, Ball::length(unknown, other)]
+            {
                 assert!(result.radius.is_nan() && !(result.low() > 0.0) && !(result.high() < 0.0));
             }
         }
