@@ -1,6 +1,7 @@
 //! A rigorous lower bound of the Jacobian determinant of a mean value map over the whole closed domain.
 
 use homeo_core::planar::{PlanarDomain, Point2};
+use homeo_core::predicate::orient2d;
 use rayon::prelude::*;
 
 use super::chart::{Chart, Frame, Guide, Step};
@@ -155,18 +156,23 @@ impl Step {
         }
         // Off the vertex, into the chart: still negative, unless it was hardly.
         let inside = [at[0].clamp(1e-6, 1.0 - 1e-6), at[1].clamp(1e-6, 1.0 - 1e-6)];
-        self.proved_fold(self.place(chart, inside))
+        self.proved_fold(chart, self.place(chart, inside))
     }
 
-    /// The point, if the determinant is proved to be negative there.
-    fn proved_fold(&self, point: Point2) -> Option<(Point2, f64)> {
+    /// The point, if it is inside the triangle of a chart, exactly, and the determinant is proved to be negative there.
+    fn proved_fold(&self, chart: &Chart, point: Point2) -> Option<(Point2, f64)> {
+        let [a, b, c] = chart.corners.map(|corner| self.points[corner as usize]);
+        let sign = orient2d(a, b, c);
+        if [[a, b], [b, c], [c, a]].iter().any(|&[from, to]| orient2d(from, to, point) != sign) {
+            return None;
+        }
         let at_most = self.determinant_at(point)?.high();
         (at_most < 0.0).then_some((point, at_most))
     }
 
     fn witnessed(&self, chart: &Chart, at: [f64; 2], boxes: u64) -> JacobianVerdict {
         let point = self.place(chart, at);
-        match self.proved_fold(point) {
+        match self.proved_fold(chart, point) {
             Some((point, at_most)) => JacobianVerdict::Negative { point, at_most, boxes },
             None => JacobianVerdict::Undecided { point, boxes },
         }

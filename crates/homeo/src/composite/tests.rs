@@ -3,7 +3,7 @@
 use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 
 use super::chart::{Frame, Guide, Local, Step};
-use super::number::{Ball, Number};
+use super::number::Ball;
 use super::{
     CompositeMap, JacobianLimits, JacobianVerdict, LinearPath, PartitionError, PartitionParams, TriangulationError,
     check_triangles, triangulate,
