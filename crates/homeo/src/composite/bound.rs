@@ -89,9 +89,10 @@ impl JacobianVerdict {
 /// use homeo_core::planar::PlanarDomain;
 /// let square = PlanarDomain::new(vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]]).unwrap();
 /// let triangles = triangulate(&square).unwrap();
-/// let bound = |images| bound_jacobian(&square, &triangles, images, &JacobianLimits::default()).unwrap();
+/// let limits = JacobianLimits { sharpness: 0.99, ..JacobianLimits::default() };
+/// let bound = |images| bound_jacobian(&square, &triangles, images, &limits).unwrap();
 /// let verdict = bound(&[[0.0, 0.0], [3.0, 0.0], [4.0, 2.0], [1.0, 2.0]]);
-/// assert!(matches!(verdict, JacobianVerdict::Positive { least, .. } if least > 5.99 && least <= 6.0));
+/// assert!(matches!(verdict, JacobianVerdict::Positive { least, .. } if least > 5.9 && least <= 6.0));
 /// let verdict = bound(&[[0.0, 0.0], [1.0, 0.0], [0.1, 0.1], [0.0, 1.0]]);
 /// assert!(matches!(verdict, JacobianVerdict::Negative { .. }));
 /// ```
