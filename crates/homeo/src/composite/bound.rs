@@ -4,15 +4,16 @@ use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::orient2d;
 use rayon::prelude::*;
 
-use super::chart::{Chart, Frame, Guide, Step};
+use super::chart::{Chart, Step};
+use super::frame::Frame;
+use super::guide::Guide;
 use super::number::Ball;
-use super::triangulation::{TriangulationError, check_triangles};
+use super::triangulation::{Tiling, TriangulationError, check_tiling};
 
 /// How long [`bound_jacobian`] tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JacobianLimits {
-    /// So many boxes are evaluated in one chart at most. There are six charts for each triangle, two triangles fewer than
-    /// vertices in a polygon.
+    /// So many boxes are evaluated in one chart at most. There are up to six charts for each triangle.
     pub boxes_per_chart: u32,
     /// A box is accepted if its lower bound is positive and at least this part of its upper bound; from 0 to 1. With 0 the
     /// sign is proved by the fewest boxes; the larger, the closer is the bound to the minimum, and the more boxes it takes.
@@ -88,9 +89,9 @@ impl JacobianVerdict {
 /// use homeo::composite::{JacobianLimits, JacobianVerdict, bound_jacobian, triangulate};
 /// use homeo_core::planar::PlanarDomain;
 /// let square = PlanarDomain::new(vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]]).unwrap();
-/// let triangles = triangulate(&square).unwrap();
+/// let tiling = triangulate(&square).unwrap();
 /// let limits = JacobianLimits { sharpness: 0.99, ..JacobianLimits::default() };
-/// let bound = |images| bound_jacobian(&square, &triangles, images, &limits).unwrap();
+/// let bound = |images| bound_jacobian(&square, &tiling, images, &limits).unwrap();
 /// let verdict = bound(&[[0.0, 0.0], [3.0, 0.0], [4.0, 2.0], [1.0, 2.0]]);
 /// assert!(matches!(verdict, JacobianVerdict::Positive { least, .. } if least > 5.9 && least <= 6.0));
 /// let verdict = bound(&[[0.0, 0.0], [1.0, 0.0], [0.1, 0.1], [0.0, 1.0]]);
@@ -98,13 +99,13 @@ impl JacobianVerdict {
 /// ```
 pub fn bound_jacobian(
     domain: &PlanarDomain,
-    triangles: &[[u32; 3]],
+    tiling: &Tiling,
     images: &[Point2],
     limits: &JacobianLimits,
 ) -> Result<JacobianVerdict, TriangulationError> {
     assert_eq!(images.len(), domain.vertex_count(), "each vertex needs an image");
-    check_triangles(domain, triangles)?;
-    Ok(Step::new(domain, triangles, images.to_vec()).bound(limits, &|| false))
+    check_tiling(domain, tiling)?;
+    Ok(Step::new(domain, tiling, images.to_vec()).bound(limits, &|| false))
 }
 
 /// Charts that are bounded before it is seen whether to go on: a fixed number, lest the answer depend on threads.
@@ -162,7 +163,7 @@ impl Step {
 
     /// The point, if it is inside the triangle of a chart, exactly, and the determinant is proved to be negative there.
     fn proved_fold(&self, chart: &Chart, point: Point2) -> Option<(Point2, f64)> {
-        let [a, b, c] = chart.corners.map(|corner| self.points[corner as usize]);
+        let [a, b, c] = chart.corners.map(|corner| self.corner(corner));
         let sign = orient2d(a, b, c);
         if [[a, b], [b, c], [c, a]].iter().any(|&[from, to]| orient2d(from, to, point) != sign) {
             return None;
@@ -217,10 +218,11 @@ impl Step {
 
     /// Where a point of a chart is, rounded.
     pub(super) fn place(&self, chart: &Chart, [s, lambda]: [f64; 2]) -> Point2 {
-        let [v, p, q] = chart.corners.map(|corner| self.points[corner as usize]);
+        let [v, from, to] = chart.corners.map(|corner| self.corner(corner));
+        let [a, b, c] = chart.part.factors().map(|[above, below]| above / below);
         std::array::from_fn(|k| {
-            let (side, other) = (p[k] - v[k], q[k] - v[k]);
-            v[k] + s * (0.5 * side + lambda * (2.0 * other - side) / 6.0)
+            let (side, other) = (from[k] - v[k], to[k] - v[k]);
+            v[k] + s * (a * side + lambda * ((b - a) * side + c * other))
         })
     }
 }
@@ -234,6 +236,8 @@ impl Frame<'_, Ball> {
         let length = (from[0] + lambda * across[0]).hypot(from[1] + lambda * across[1]);
         let width = across[0].hypot(across[1]) * (sides[1][1] - sides[1][0]);
         let along = length * (sides[0][1] - sides[0][0]) / nearest;
-        usize::from((sides[0][1] * width / nearest).max(width / length) > along)
+        // At an added apex directions do not matter.
+        let turned = if self.step.is_vertex(self.chart.corners[0]) { width / length } else { 0.0 };
+        usize::from((sides[0][1] * width / nearest).max(turned) > along)
     }
 }

@@ -2,8 +2,11 @@
 
 use homeo_core::planar::Point2;
 
-use super::chart::{Chart, Frame, Guide, Local, Step, cross};
+use super::chart::{Chart, Step};
+use super::frame::{Frame, Local};
+use super::guide::Guide;
 use super::number::{Ball, Number};
+use super::vector::cross;
 
 /// A box of the plane.
 pub(super) type BallPoint = [Ball; 2];
@@ -34,14 +37,16 @@ impl Step {
 
     /// `s` and `s λ` of a point, rounded.
     fn coordinates(&self, chart: &Chart, point: Point2) -> [f64; 2] {
-        let [v, p, q] = chart.corners.map(|corner| self.points[corner as usize]);
+        let [v, p, q] = chart.corners.map(|corner| self.corner(corner));
         let side = [p[0] - v[0], p[1] - v[1]];
         let other = [q[0] - v[0], q[1] - v[1]];
         let offset = [point[0] - v[0], point[1] - v[1]];
         let turn = cross(side, other);
-        // offset = a side / 2 + b (2 other - side) / 6.
+        // The offset is s (a side + λ ((b - a) side + c other)).
         let (along, across) = (cross(offset, other) / turn, cross(side, offset) / turn);
-        [2.0 * along + across, 3.0 * across]
+        let [a, b, c] = chart.part.factors().map(|[above, below]| above / below);
+        let there = across / c;
+        [(along - (b - a) * there) / a, there]
     }
 
     /// A point of the domain near a point, but for rounding.
@@ -61,14 +66,14 @@ impl Step {
         let (chart, [s, lambda]) = self.locate(point);
         let mut frame = Frame::<f64>::new(self, chart);
         let local = frame.evaluate(s, lambda, &Guide::NONE);
-        (local.image, derivative(&local, frame.turn))
+        (local.image, derivative(&local))
     }
 
     /// Calls `each` with the parts of all charts that a box may meet.
     fn meet(&self, at: BallPoint, mut each: impl FnMut(&mut Frame<Ball>, [Ball; 2])) {
         for chart in &self.charts {
             // Quickly first, with room for rounding.
-            let corners = chart.corners.map(|corner| self.points[corner as usize]);
+            let corners = chart.corners.map(|corner| self.corner(corner));
             let is_apart = |k: usize| {
                 let (low, high) = (at[k].low(), at[k].high());
                 corners.iter().all(|corner| corner[k] < low) || corners.iter().all(|corner| corner[k] > high)
@@ -121,7 +126,7 @@ impl Step {
         let mut rate = 0.0;
         self.meet(at, |frame, sides| {
             let guide = frame.guide(sides[0].near(), sides[1].near());
-            let here = inverse_norm(&frame.evaluate(sides[0], sides[1], &guide), frame.turn);
+            let here = inverse_norm(&frame.evaluate(sides[0], sides[1], &guide));
             rate = if here > rate || here.is_nan() { here } else { rate };
         });
         rate
@@ -142,8 +147,8 @@ fn part_of_chart([a, b]: [Ball; 2]) -> Option<[Ball; 2]> {
 }
 
 /// The derivative in the plane: it takes the axes of the chart to the columns.
-fn derivative(local: &Local<f64>, turn: f64) -> Jacobian {
-    let [along, across] = local.axes;
+fn derivative(local: &Local<f64>) -> Jacobian {
+    let ([along, across], turn) = (local.axes, local.turn);
     let [first, second] = local.columns;
     std::array::from_fn(|k| {
         [(first[k] * across[1] - second[k] * along[1]) / turn, (second[k] * along[0] - first[k] * across[0]) / turn]
@@ -151,8 +156,8 @@ fn derivative(local: &Local<f64>, turn: f64) -> Jacobian {
 }
 
 /// An upper bound of the norm of the inverse of the derivative.
-fn inverse_norm(local: &Local<Ball>, turn: Ball) -> f64 {
-    let [along, across] = local.axes;
+fn inverse_norm(local: &Local<Ball>) -> f64 {
+    let ([along, across], turn) = (local.axes, local.turn);
     let [first, second] = local.columns;
     let mut squares = 0.0;
     for k in 0..2 {

@@ -12,6 +12,7 @@ use super::number::{Ball, Number};
 use super::partition::{
     Partition, PartitionError, PartitionParams, Stage, VertexPath, binary_partition, given_partition,
 };
+use super::triangulation::Tiling;
 use crate::progress::Progress;
 
 /// A point of the plane, known up to an error.
@@ -131,9 +132,9 @@ impl CompositeMap {
         self.stages.iter().map(|stage| stage.time)
     }
 
-    /// For each domain the triangles that tile it, in which the proof was made; vertices numbered ring after ring.
-    pub fn triangles(&self) -> impl Iterator<Item = &[[u32; 3]]> {
-        self.stages.iter().map(|stage| stage.triangles.as_slice())
+    /// For each domain the triangles that tile it, in which the proof was made.
+    pub fn tilings(&self) -> impl Iterator<Item = &Tiling> {
+        self.stages.iter().map(|stage| &stage.tiling)
     }
 
     /// For each step a number that its Jacobian determinant is proved to be no less than.

@@ -16,6 +16,8 @@
 mod bound;
 mod chart;
 mod evaluate;
+mod frame;
+mod guide;
 mod invert;
 mod map;
 mod number;
@@ -23,10 +25,11 @@ mod partition;
 #[cfg(test)]
 mod tests;
 mod triangulation;
+mod vector;
 
 pub use bound::{JacobianLimits, JacobianVerdict, bound_jacobian};
 pub use evaluate::Jacobian;
 pub use invert::InverseError;
 pub use map::{CompositeError, CompositeInfo, CompositeMap, EnclosedPoint};
 pub use partition::{LinearPath, PartitionError, PartitionParams, VertexPath};
-pub use triangulation::{TriangulationError, check_triangles, triangulate};
+pub use triangulation::{Tiling, TriangulationError, check_tiling, triangulate};

@@ -6,7 +6,7 @@ use homeo_core::planar::{DomainError, DomainPair, PlanarDomain, Point2};
 
 use super::bound::{JacobianLimits, JacobianVerdict};
 use super::chart::Step;
-use super::triangulation::{TriangulationError, triangulate};
+use super::triangulation::{Tiling, TriangulationError, triangulate};
 use crate::progress::Progress;
 
 /// How the vertices of one domain travel to those of another.
@@ -111,19 +111,19 @@ pub enum PartitionError {
 pub(super) struct Stage {
     pub time: f64,
     pub domain: PlanarDomain,
-    pub triangles: Vec<[u32; 3]>,
+    pub tiling: Tiling,
 }
 
 impl Stage {
     pub fn at(path: &dyn VertexPath, time: f64) -> Result<Self, PartitionError> {
         let domain = PlanarDomain::new(path.rings(time)).map_err(|error| PartitionError::NotADomain { time, error })?;
-        let triangles = triangulate(&domain).map_err(|error| PartitionError::NoTriangles { time, error })?;
-        Ok(Self { time, domain, triangles })
+        let tiling = triangulate(&domain).map_err(|error| PartitionError::NoTriangles { time, error })?;
+        Ok(Self { time, domain, tiling })
     }
 
     /// The mean value map to another stage.
     pub fn step_to(&self, next: &Self) -> Step {
-        Step::new(&self.domain, &self.triangles, next.domain.vertices().collect())
+        Step::new(&self.domain, &self.tiling, next.domain.vertices().collect())
     }
 }
 

@@ -2,18 +2,20 @@
 
 use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 
-use super::chart::{Frame, Guide, Local, Step};
+use super::chart::Step;
+use super::frame::{Frame, Local};
+use super::guide::Guide;
 use super::number::Ball;
 use super::{
-    CompositeMap, JacobianLimits, JacobianVerdict, LinearPath, PartitionError, PartitionParams, TriangulationError,
-    check_triangles, triangulate,
+    CompositeMap, JacobianLimits, JacobianVerdict, LinearPath, PartitionError, PartitionParams, Tiling,
+    TriangulationError, check_tiling, triangulate,
 };
 use crate::progress::Silent;
 
 fn step(rings: Vec<Vec<Point2>>, images: &[Point2]) -> Step {
     let domain = PlanarDomain::new(rings).unwrap();
-    let triangles = triangulate(&domain).unwrap();
-    Step::new(&domain, &triangles, images.to_vec())
+    let tiling = triangulate(&domain).unwrap();
+    Step::new(&domain, &tiling, images.to_vec())
 }
 
 fn verdict(step: &Step) -> JacobianVerdict {
@@ -205,18 +207,20 @@ fn bounds_do_not_depend_on_threads() {
 #[test]
 fn triangles_that_do_not_tile_are_refused() {
     let domain = PlanarDomain::new(vec![square(2.0), hole(1.0)]).unwrap();
-    let triangles = triangulate(&domain).unwrap();
-    assert_eq!(triangles.len(), 8);
-    assert!(check_triangles(&domain, &triangles).is_ok());
-    assert!(matches!(check_triangles(&domain, &triangles[1..]), Err(TriangulationError::Unpaired(..))));
+    let tiling = triangulate(&domain).unwrap();
+    let inside = |triangles: &[[u32; 3]]| Tiling { added: tiling.added.clone(), triangles: triangles.to_vec() };
+    let triangles = tiling.triangles.clone();
+    assert!(triangles.len() >= 8);
+    assert!(check_tiling(&domain, &tiling).is_ok());
+    assert!(matches!(check_tiling(&domain, &inside(&triangles[1..])), Err(TriangulationError::Unpaired(..))));
     let twice: Vec<_> = triangles.iter().chain(&triangles[..1]).copied().collect();
-    assert!(matches!(check_triangles(&domain, &twice), Err(TriangulationError::Unpaired(..))));
+    assert!(matches!(check_tiling(&domain, &inside(&twice)), Err(TriangulationError::Unpaired(..))));
     let mut turned = triangles.clone();
     turned[3].swap(0, 1);
-    assert_eq!(check_triangles(&domain, &turned), Err(TriangulationError::NotPositive(3)));
+    assert_eq!(check_tiling(&domain, &inside(&turned)), Err(TriangulationError::NotPositive(3)));
     let mut strange = triangles;
-    strange[0][0] = 99;
-    assert_eq!(check_triangles(&domain, &strange), Err(TriangulationError::NotPositive(0)));
+    strange[0][0] = 9999;
+    assert_eq!(check_tiling(&domain, &inside(&strange)), Err(TriangulationError::NotPositive(0)));
 }
 
 /// A frame whose inner square turns by a right angle.

@@ -1,10 +1,12 @@
-//! A domain cut into triangles with its own vertices, certified.
+//! A domain cut into triangles, certified.
 
 use std::collections::HashSet;
 
-use homeo_core::planar::PlanarDomain;
+use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::{Sign, orient2d};
-use spade::{ConstrainedDelaunayTriangulation, Point2 as Position, Triangulation};
+use spade::{
+    AngleLimit, ConstrainedDelaunayTriangulation, Point2 as Position, RefinementParameters, Triangulation as _,
+};
 
 /// Why a domain was not cut into triangles, or why triangles do not cut it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -30,11 +32,26 @@ pub(super) fn next_vertices(domain: &PlanarDomain) -> Vec<u32> {
     next
 }
 
-/// Cuts a domain into triangles without new vertices: the constrained Delaunay triangulation. Corners run
-/// counter-clockwise; vertices are numbered ring after ring.
+/// Triangles that tile a domain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tiling {
+    /// Corners inside the domain; numbered after the vertices of the domain, which are numbered ring after ring.
+    pub added: Vec<Point2>,
+    /// Corners run counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Angles are made as large as this where vertices of the domain allow it. Proved to end below 20.7; more mostly works, and
+/// the number of added points is limited anyway.
+const DEGREES: f64 = 25.0;
+/// So many points are added for each vertex, at most.
+const ADDED: usize = 12;
+
+/// Cuts a domain into triangles: the constrained Delaunay triangulation, refined by points inside, not on edges. They become
+/// larger away from the vertices.
 ///
 /// # Guarantee
-/// What is returned has passed [`check_triangles`]: it tiles the domain, exactly.
+/// What is returned has passed [`check_tiling`]: it tiles the domain, exactly.
 ///
 /// # Errors
 /// When the triangulator refuses a vertex, or the result does not pass.
@@ -43,14 +60,15 @@ pub(super) fn next_vertices(domain: &PlanarDomain) -> Vec<u32> {
 /// About `O(n log n)`.
 ///
 /// ```
-/// use homeo::composite::triangulate;
+/// use homeo::composite::{check_tiling, triangulate};
 /// use homeo_core::planar::PlanarDomain;
 /// let square = PlanarDomain::new(vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]]).unwrap();
-/// assert_eq!(triangulate(&square).unwrap().len(), 2);
+/// let tiling = triangulate(&square).unwrap();
+/// assert!(tiling.triangles.len() >= 2 && check_tiling(&square, &tiling).is_ok());
 /// ```
-pub fn triangulate(domain: &PlanarDomain) -> Result<Vec<[u32; 3]>, TriangulationError> {
+pub fn triangulate(domain: &PlanarDomain) -> Result<Tiling, TriangulationError> {
     let next = next_vertices(domain);
-    let mut mesh = ConstrainedDelaunayTriangulation::<Position<f64>>::new();
+    let mut mesh = Mesh::new();
     let mut handles = Vec::with_capacity(next.len());
     for (number, [x, y]) in domain.vertices().enumerate() {
         let refused = TriangulationError::Refused(number as u32);
@@ -65,17 +83,36 @@ pub fn triangulate(domain: &PlanarDomain) -> Result<Vec<[u32; 3]>, Triangulation
             mesh.add_constraint(handles[from], handles[to as usize]);
         }
     }
-    let triangles = inner_triangles(&mesh, &next);
-    check_triangles(domain, &triangles)?;
-    Ok(triangles)
+    let plain = tiling_of(&mesh, &next);
+    mesh.refine(
+        RefinementParameters::new()
+            .exclude_outer_faces(true)
+            .keep_constraint_edges()
+            .with_angle_limit(AngleLimit::from_deg(DEGREES))
+            .with_max_additional_vertices(ADDED * next.len()),
+    );
+    let refined = tiling_of(&mesh, &next);
+    if check_tiling(domain, &refined).is_ok() {
+        return Ok(refined);
+    }
+    check_tiling(domain, &plain).map(|()| plain)
+}
+
+type Mesh = ConstrainedDelaunayTriangulation<Position<f64>>;
+
+/// The part of a triangulation inside a domain.
+fn tiling_of(mesh: &Mesh, next: &[u32]) -> Tiling {
+    let added = mesh.vertices().skip(next.len()).map(|vertex| [vertex.position().x, vertex.position().y]).collect();
+    Tiling { added, triangles: inner_triangles(mesh, next) }
 }
 
 /// The triangles that are reached from the left of boundary edges without crossing one, in order.
-fn inner_triangles(mesh: &ConstrainedDelaunayTriangulation<Position<f64>>, next: &[u32]) -> Vec<[u32; 3]> {
+fn inner_triangles(mesh: &Mesh, next: &[u32]) -> Vec<[u32; 3]> {
     let mut is_inner = vec![false; mesh.num_all_faces()];
     let mut waiting = Vec::new();
     for edge in mesh.directed_edges() {
-        if next[edge.from().index()] as usize == edge.to().index() && !edge.face().is_outer() {
+        if next.get(edge.from().index()).is_some_and(|&to| to as usize == edge.to().index()) && !edge.face().is_outer()
+        {
             waiting.push(edge.face().fix());
         }
     }
@@ -84,7 +121,7 @@ fn inner_triangles(mesh: &ConstrainedDelaunayTriangulation<Position<f64>>, next:
             continue;
         }
         for edge in mesh.face(face).as_inner().into_iter().flat_map(|inner| inner.adjacent_edges()) {
-            let is_boundary = next[edge.from().index()] as usize == edge.to().index();
+            let is_boundary = next.get(edge.from().index()).is_some_and(|&to| to as usize == edge.to().index());
             if !is_boundary && !edge.rev().face().is_outer() {
                 waiting.push(edge.rev().face().fix());
             }
@@ -112,17 +149,17 @@ fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
 /// # Guarantee
 /// Then the triangles, as a chain, have the boundary of the domain as boundary. So almost every point of the domain is in
 /// exactly one of them, and no point outside in any: the number of triangles round a point is the winding number of the
-/// boundary round it.
+/// boundary round it. An added point that is a corner is inside the domain: triangles lie all round it.
 ///
 /// # Errors
 /// The first triangle or edge that is wrong.
 ///
 /// # Complexity
 /// Linear.
-pub fn check_triangles(domain: &PlanarDomain, triangles: &[[u32; 3]]) -> Result<(), TriangulationError> {
-    let points: Vec<_> = domain.vertices().collect();
+pub fn check_tiling(domain: &PlanarDomain, tiling: &Tiling) -> Result<(), TriangulationError> {
+    let points: Vec<_> = domain.vertices().chain(tiling.added.iter().copied()).collect();
     let mut edges = HashSet::new();
-    for (number, triangle) in triangles.iter().enumerate() {
+    for (number, triangle) in tiling.triangles.iter().enumerate() {
         let is_positive = triangle.iter().all(|&corner| (corner as usize) < points.len()) && {
             let [a, b, c] = triangle.map(|corner| points[corner as usize]);
             orient2d(a, b, c) == Sign::Positive
