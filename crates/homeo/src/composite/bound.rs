@@ -196,8 +196,8 @@ impl Step {
                 return (Outcome::Undecided([s, lambda]), boxes);
             }
             boxes += 1;
-            let guide = frame.guide(s, lambda);
             let [s_ball, lambda_ball] = sides.map(|[low, high]| Ball::between(low, high));
+            let guide = frame.guide(s_ball, lambda_ball);
             let determinant = frame.evaluate(s_ball, lambda_ball, &guide).determinant;
             let (low, high) = (determinant.low(), determinant.high());
             if low > 0.0 && low >= limits.sharpness * high {
@@ -205,7 +205,7 @@ impl Step {
             } else if high < 0.0 {
                 return (Outcome::Negative([s, lambda]), boxes);
             } else {
-                let axis = frame.longer_side(sides, guide.nearest);
+                let axis = frame.longer_side(sides, &guide);
                 for half in [[s, lambda][axis], sides[axis][1]].into_iter().zip([sides[axis][0], [s, lambda][axis]]) {
                     let mut part = sides;
                     part[axis] = [half.1, half.0];
@@ -230,14 +230,14 @@ impl Step {
 impl Frame<'_, Ball> {
     /// Along which of `s` and `λ` a box is longer, in lengths that matter: those in the plane against the distance of the
     /// nearest vertex, and the angle at `v`.
-    fn longer_side(&self, sides: [[f64; 2]; 2], nearest: f64) -> usize {
+    fn longer_side(&self, sides: [[f64; 2]; 2], guide: &Guide) -> usize {
         let [from, across] = self.axes.map(|axis| axis.map(|c| c.middle));
         let lambda = 0.5 * (sides[1][0] + sides[1][1]);
         let length = (from[0] + lambda * across[0]).hypot(from[1] + lambda * across[1]);
         let width = across[0].hypot(across[1]) * (sides[1][1] - sides[1][0]);
-        let along = length * (sides[0][1] - sides[0][0]) / nearest;
-        // At an added apex directions do not matter.
-        let turned = if self.step.is_vertex(self.chart.corners[0]) { width / length } else { 0.0 };
-        usize::from((sides[0][1] * width / nearest).max(turned) > along)
+        let along = length * (sides[0][1] - sides[0][0]) / guide.nearest;
+        // Off the apex directions do not matter.
+        let turned = if self.apex(guide).is_some() { width / length } else { 0.0 };
+        usize::from((sides[0][1] * width / guide.nearest).max(turned) > along)
     }
 }

@@ -102,7 +102,7 @@ impl Step {
     pub(super) fn enclose(&self, at: BallPoint) -> BallPoint {
         let mut hull: Option<BallPoint> = None;
         self.meet(at, |frame, sides| {
-            let guide = frame.guide(sides[0].near(), sides[1].near());
+            let guide = frame.guide(sides[0], sides[1]);
             let image = frame.evaluate(sides[0], sides[1], &guide).image;
             hull = Some(hull.map_or(image, |hull| [hull[0].hull(image[0]), hull[1].hull(image[1])]));
         });
@@ -113,7 +113,7 @@ impl Step {
     pub(super) fn determinant_at(&self, point: Point2) -> Option<Ball> {
         let mut found: Option<Ball> = None;
         self.meet(point.map(Ball::of), |frame, sides| {
-            let guide = frame.guide(sides[0].near(), sides[1].near());
+            let guide = frame.guide(sides[0], sides[1]);
             let here = frame.evaluate(sides[0], sides[1], &guide).determinant;
             found = Some(found.map_or(here, |found| found.hull(here)));
         });
@@ -125,7 +125,7 @@ impl Step {
     pub(super) fn inverse_rate(&self, at: BallPoint) -> f64 {
         let mut rate = 0.0;
         self.meet(at, |frame, sides| {
-            let guide = frame.guide(sides[0].near(), sides[1].near());
+            let guide = frame.guide(sides[0], sides[1]);
             let here = inverse_norm(&frame.evaluate(sides[0], sides[1], &guide));
             rate = if here > rate || here.is_nan() { here } else { rate };
         });

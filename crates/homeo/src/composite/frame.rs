@@ -71,7 +71,7 @@ impl<'a, T: Number> Frame<'a, T> {
     /// Any guide gives the same exact result.
     pub fn evaluate(&mut self, s: T, lambda: T, guide: &Guide) -> Local<T> {
         let along = plus(self.axes[0], scaled(lambda, self.axes[1]));
-        if !self.step.is_vertex(self.chart.corners[0]) {
+        if self.apex(guide).is_none() {
             return self.evaluate_at(scaled(s, along), guide);
         }
         let towards = T::sight(along, along).unit;
@@ -81,7 +81,7 @@ impl<'a, T: Number> Frame<'a, T> {
         let across = minus(self.axes[1], scaled(skew, along));
         let length = Dual([length, T::of(0.0), dot(towards, self.axes[1])]);
         let view = View { position: scaled(s, along), s, along, across, skew, length };
-        self.look(view.position, opposite(towards), guide.near_edge);
+        self.look(view.position, opposite(towards), guide);
         let mut edges = Vec::with_capacity(3);
         for touch in [Touch::Next, Touch::Previous] {
             let edge = self.edge_at_vertex(touch);
@@ -96,13 +96,19 @@ impl<'a, T: Number> Frame<'a, T> {
         self.assemble(&view, rest, &guide.linear)
     }
 
-    /// The map and its derivative at `v + position`, where `v` is no vertex of the domain.
+    /// The vertex of the domain at which a box is seen along directions: the apex, if it is one and the box is near.
+    pub fn apex(&self, guide: &Guide) -> Option<usize> {
+        let v = self.chart.corners[0];
+        (self.step.is_vertex(v) && !guide.is_off_apex).then_some(v as usize)
+    }
+
+    /// The map and its derivative at `v + position`, which is no vertex of the domain, and on no edge but the near one.
     fn evaluate_at(&mut self, position: Vector<T>, guide: &Guide) -> Local<T> {
         let (zero, one) = (T::of(0.0), T::of(1.0));
         let axes = [[one, zero], [zero, one]];
         let [along, across] = axes;
         let view = View { position, s: one, along, across, skew: zero, length: Dual([one, zero, zero]) };
-        self.look(position, along, guide.near_edge);
+        self.look(position, along, guide);
         let edges: Vec<_> = guide.near_edge.map(|edge| self.special_edge(edge, &view)).into_iter().collect();
         let [weight, first, second, _] = self.sums(&edges, &view, guide);
         let rest = [first.over(weight), second.over(weight)];
@@ -197,21 +203,21 @@ impl<'a, T: Number> Frame<'a, T> {
     }
 
     /// Looks at all vertices and edges from `v + offset`; at `v` itself in the direction `towards`.
-    fn look(&mut self, offset: Vector<T>, towards: Vector<T>, near_edge: Option<usize>) {
-        let v = self.chart.corners[0] as usize;
+    fn look(&mut self, offset: Vector<T>, towards: Vector<T>, guide: &Guide) {
+        let v = self.apex(guide);
         for (sight, [at, _]) in self.sights.iter_mut().zip(&self.offsets) {
             *sight = T::sight(minus(*at, offset), offset);
         }
-        if let Some(sight) = self.sights.get_mut(v) {
-            *sight = Sight { unit: towards, inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0 };
+        if let Some(v) = v {
+            self.sights[v] = Sight { unit: towards, inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0 };
         }
         let (half, reach) = (T::of(0.5), T::reach(offset));
         for (i, tangent) in self.tangents.iter_mut().enumerate() {
             let k = self.step.next[i] as usize;
-            if i == v || k == v {
+            if v.is_some_and(|v| i == v || k == v) {
                 continue;
             }
-            if near_edge == Some(i) {
+            if guide.near_edge == Some(i) {
                 *tangent = [T::of(0.0); 3];
                 continue;
             }
@@ -227,10 +233,10 @@ impl<'a, T: Number> Frame<'a, T> {
     /// Sums over all other vertices, of edges that are not special only: of the weights, and of weights times residuals; each
     /// with its gradient in the plane. First those of all vertices but a near one, then those of this, times its distance.
     fn regular_sums(&self, guide: &Guide) -> [[[T; 3]; 3]; 2] {
-        let v = self.chart.corners[0] as usize;
+        let v = self.apex(guide);
         let mut sums = [[[T::of(0.0); 3]; 3]; 2];
         for (i, sight) in self.sights.iter().enumerate() {
-            if i == v {
+            if v == Some(i) {
                 continue;
             }
             let (before, after) = (&self.tangents[self.step.previous[i] as usize], &self.tangents[i]);

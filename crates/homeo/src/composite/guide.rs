@@ -7,6 +7,9 @@ use super::frame::Frame;
 use super::number::Ball;
 use super::vector::dot;
 
+/// A box is bounded in the plane if it is not larger than this part of its distance from the apex, by each coordinate.
+const OFF_APEX: f64 = 0.4;
+
 /// A linear map near the map: what of it is reproduced exactly is not left to sums of enclosures.
 pub(super) type Linear = [[f64; 2]; 2];
 
@@ -17,6 +20,8 @@ pub(super) struct Guide {
     pub linear: Linear,
     /// after which one goes by so much further: nothing, if the apex is a vertex.
     pub shift: Point2,
+    /// Whether the box is so far from the apex that it is bounded by gradients in the plane, if that is a vertex too.
+    pub is_off_apex: bool,
     /// The edge, by its first vertex, that is seen at the largest angle, if more than a right one: its weight dominates,
     /// and is factored out.
     pub near_edge: Option<usize>,
@@ -29,16 +34,18 @@ pub(super) struct Guide {
 impl Guide {
     /// No help.
     pub const NONE: Self =
-        Self { linear: [[1.0, 0.0], [0.0, 1.0]], shift: [0.0; 2], near_edge: None, near_vertex: None, nearest: 1.0 };
+        Self { linear: [[1.0, 0.0], [0.0, 1.0]], shift: [0.0; 2], is_off_apex: false, near_edge: None, near_vertex: None, nearest: 1.0 };
 }
 
 impl Frame<'_, Ball> {
-    /// A guide for the surroundings of a point of the chart.
-    pub fn guide(&self, s: f64, lambda: f64) -> Guide {
+    /// A guide for a box of the chart.
+    pub fn guide(&self, s_ball: Ball, lambda_ball: Ball) -> Guide {
+        let (s, lambda) = (s_ball.middle, lambda_ball.middle);
+        let is_off_apex = s_ball.radius < OFF_APEX * s && self.axes_turned(lambda_ball) < OFF_APEX;
         let axis = |axis: usize, k: usize| self.axes[axis][k].middle;
         let at: Point2 = std::array::from_fn(|k| s * (axis(0, k) + lambda * axis(1, k)));
         let there = |i: usize| -> Point2 { std::array::from_fn(|k| self.offsets[i][0][k].middle - at[k]) };
-        let (linear, shift, near_vertex, nearest) = self.fit(at);
+        let (linear, shift, near_vertex, nearest) = self.fit(at, is_off_apex);
         let mut near = (0.0, None);
         for i in 0..self.offsets.len() {
             let k = self.step.next[i] as usize;
@@ -50,22 +57,29 @@ impl Frame<'_, Ball> {
                     Touch::Nothing => false,
                     touch => self.edge_at_vertex(touch) == i,
                 };
-                if square > near.0 && !is_touched {
+                if square > near.0 && (is_off_apex || !is_touched) {
                     near = (square, Some(i));
                 }
             }
         }
-        Guide { linear, shift, near_edge: near.1, near_vertex, nearest }
+        Guide { linear, shift, is_off_apex, near_edge: near.1, near_vertex, nearest }
+    }
+
+    /// How far `e` is from its middle, in lengths of it.
+    fn axes_turned(&self, lambda: Ball) -> f64 {
+        let [from, across] = self.axes.map(|axis| axis.map(|c| c.middle));
+        let length = (from[0] + lambda.middle * across[0]).hypot(from[1] + lambda.middle * across[1]);
+        across[0].hypot(across[1]) * lambda.radius / length
     }
 
     /// A linear map that takes vertices near a point close to their images, what it is shifted by, and which vertex but `v`
     /// is nearest, and how near. Least squares, weighted by the inverse fourth power of distances.
-    fn fit(&self, at: Point2) -> (Linear, Point2, Option<usize>, f64) {
-        let v = self.chart.corners[0] as usize;
+    fn fit(&self, at: Point2, is_off_apex: bool) -> (Linear, Point2, Option<usize>, f64) {
+        let v = (!is_off_apex).then_some(self.chart.corners[0] as usize);
         let mut nearest = (f64::INFINITY, None);
         let mut moments = Moments::default();
         for (i, &[offset, image]) in self.offsets.iter().enumerate() {
-            if i == v {
+            if v == Some(i) {
                 continue;
             }
             let (offset, image) = (offset.map(|c| c.middle), image.map(|c| c.middle));
@@ -76,7 +90,7 @@ impl Frame<'_, Ball> {
             }
             moments.add(1.0 / (square * square), offset, image);
         }
-        let (linear, shift) = moments.solve(!self.step.is_vertex(self.chart.corners[0]));
+        let (linear, shift) = moments.solve(is_off_apex || !self.step.is_vertex(self.chart.corners[0]));
         (linear, shift, nearest.1, nearest.0.sqrt())
     }
 }

@@ -121,8 +121,9 @@ fn enclosures_hold_values_up_to_vertices_and_edges() {
                 // Every third box at the vertex, every fifth at λ = 0.
                 let at = [if round % 3 == 0 { 0.0 } else { next() }, if round % 5 == 0 { 0.0 } else { next() }];
                 let [s, lambda] = [side(at[0], width), side(at[1], width)];
-                let guide = boxes.guide(0.5 * (s[0] + s[1]), 0.5 * (lambda[0] + lambda[1]));
-                let around = boxes.evaluate(Ball::between(s[0], s[1]), Ball::between(lambda[0], lambda[1]), &guide);
+                let sides = [s, lambda].map(|[low, high]| Ball::between(low, high));
+                let guide = boxes.guide(sides[0], sides[1]);
+                let around = boxes.evaluate(sides[0], sides[1], &guide);
                 let inside = |[low, high]: [f64; 2], part: f64| low + part * (high - low);
                 for part in [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [next(), next()]] {
                     let Local { image, determinant, .. } =
