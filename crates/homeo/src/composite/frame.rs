@@ -19,6 +19,8 @@ pub(super) struct Frame<'a, T> {
     pub offsets: Vec<[Vector<T>; 2]>,
     /// Of each edge, by its first vertex: its vector, reversed and conjugated.
     edges: Vec<Vector<T>>,
+    /// Of each edge: no less than its length.
+    lengths: Vec<f64>,
     sights: Vec<Sight<T>>,
     /// Of each edge, by its first vertex: the half tangent and its gradient.
     tangents: Vec<[T; 3]>,
@@ -52,11 +54,12 @@ impl<'a, T: Number> Frame<'a, T> {
             let [x, y] = minus(of::<T>(*from), of(step.points[to as usize]));
             [x, y.opposite()]
         };
-        let edges = step.points.iter().zip(&step.next).map(edge).collect();
-        let nothing = Sight { unit: of([0.0; 2]), inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0 };
+        let edges: Vec<Vector<T>> = step.points.iter().zip(&step.next).map(edge).collect();
+        let lengths = edges.iter().map(|&[x, y]| T::length(x, y).most()).collect();
+        let nothing = Sight { unit: of([0.0; 2]), inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0, width: 0.0 };
         let sights = vec![nothing; offsets.len()];
         let tangents = vec![[T::of(0.0); 3]; offsets.len()];
-        Self { step, chart, axes, turn: T::of_ball(chart.turn), offsets, edges, sights, tangents }
+        Self { step, chart, axes, turn: T::of_ball(chart.turn), offsets, edges, lengths, sights, tangents }
     }
 
     /// Two coordinates of a point: `s`, and `s λ`.
@@ -209,7 +212,7 @@ impl<'a, T: Number> Frame<'a, T> {
             *sight = T::sight(minus(*at, offset), offset);
         }
         if let Some(v) = v {
-            self.sights[v] = Sight { unit: towards, inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0 };
+            self.sights[v] = Sight { unit: towards, inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0, width: 0.0 };
         }
         let (half, reach) = (T::of(0.5), T::reach(offset));
         for (i, tangent) in self.tangents.iter_mut().enumerate() {
@@ -224,7 +227,7 @@ impl<'a, T: Number> Frame<'a, T> {
             let (from, to) = (&self.sights[i], &self.sights[k]);
             // The difference of pulls 1 / conj(z) as a product: far edges are seen to be small.
             let turning = times(times(from.pull, to.pull), self.edges[i]);
-            let t = T::half_tangent(from, to, turning, reach);
+            let t = T::half_tangent(from, to, self.lengths[i], reach);
             let rate = half + half * (t * t);
             *tangent = [t, rate * turning[1], (rate * turning[0]).opposite()];
         }
@@ -264,7 +267,7 @@ impl<'a, T: Number> Frame<'a, T> {
         let other = self.step.next[edge] as usize;
         let (from, to) = (&self.sights[edge], &self.sights[other]);
         let turning = times(times(from.pull, to.pull), self.edges[edge]);
-        let [sine, cosine] = T::sine_cosine(from, to, turning, T::reach(view.position));
+        let [sine, cosine] = T::sine_cosine(from, to, self.lengths[edge], T::reach(view.position));
         let angle = view.chain(T::of(0.0), [turning[1], turning[0].opposite()]);
         Special::near(sine, cosine, angle, [Some(edge), Some(other)])
     }

@@ -8,7 +8,10 @@ use super::number::Ball;
 use super::vector::dot;
 
 /// A box is bounded in the plane if it is not larger than this part of its distance from the apex, by each coordinate.
-const OFF_APEX: f64 = 0.4;
+const OFF_APEX: f64 = 0.15;
+/// The distance of the nearest vertex is factored out if its square is less than this part of that of the next one: where
+/// no weight dominates, a factor only widens.
+const MUCH_NEARER: f64 = 0.4;
 
 /// A linear map near the map: what of it is reproduced exactly is not left to sums of enclosures.
 pub(super) type Linear = [[f64; 2]; 2];
@@ -25,16 +28,22 @@ pub(super) struct Guide {
     /// The edge, by its first vertex, that is seen at the largest angle, if more than a right one: its weight dominates,
     /// and is factored out.
     pub near_edge: Option<usize>,
-    /// The nearest vertex but `v`, whose distance is factored out as well.
+    /// The nearest vertex but `v`, if it is by far: its distance is factored out as well.
     pub near_vertex: Option<usize>,
-    /// How near it is.
+    /// How near the nearest vertex is.
     pub nearest: f64,
 }
 
 impl Guide {
     /// No help.
-    pub const NONE: Self =
-        Self { linear: [[1.0, 0.0], [0.0, 1.0]], shift: [0.0; 2], is_off_apex: false, near_edge: None, near_vertex: None, nearest: 1.0 };
+    pub const NONE: Self = Self {
+        linear: [[1.0, 0.0], [0.0, 1.0]],
+        shift: [0.0; 2],
+        is_off_apex: false,
+        near_edge: None,
+        near_vertex: None,
+        nearest: 1.0,
+    };
 }
 
 impl Frame<'_, Ball> {
@@ -76,7 +85,7 @@ impl Frame<'_, Ball> {
     /// is nearest, and how near. Least squares, weighted by the inverse fourth power of distances.
     fn fit(&self, at: Point2, is_off_apex: bool) -> (Linear, Point2, Option<usize>, f64) {
         let v = (!is_off_apex).then_some(self.chart.corners[0] as usize);
-        let mut nearest = (f64::INFINITY, None);
+        let (mut nearest, mut second) = ((f64::INFINITY, None), f64::INFINITY);
         let mut moments = Moments::default();
         for (i, &[offset, image]) in self.offsets.iter().enumerate() {
             if v == Some(i) {
@@ -85,13 +94,14 @@ impl Frame<'_, Ball> {
             let (offset, image) = (offset.map(|c| c.middle), image.map(|c| c.middle));
             let (x, y) = (offset[0] - at[0], offset[1] - at[1]);
             let square = x * x + y * y;
+            second = second.min(square.max(nearest.0));
             if square < nearest.0 {
                 nearest = (square, Some(i));
             }
             moments.add(1.0 / (square * square), offset, image);
         }
         let (linear, shift) = moments.solve(is_off_apex || !self.step.is_vertex(self.chart.corners[0]));
-        (linear, shift, nearest.1, nearest.0.sqrt())
+        (linear, shift, nearest.1.filter(|_| nearest.0 < MUCH_NEARER * second), nearest.0.sqrt())
     }
 }
 

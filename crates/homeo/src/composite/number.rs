@@ -18,12 +18,14 @@ pub(super) trait Number:
     /// is the same for all vertices: where the point is.
     fn sight(vector: [Self; 2], common: [Self; 2]) -> Sight<Self>;
     /// `tan(α / 2)` of the angle from one vertex to another, seen from a point that is within `reach` of the middle of
-    /// where it may be, where `turning` is the difference of pulls: as long as the gradient of the angle.
-    fn half_tangent(from: &Sight<Self>, to: &Sight<Self>, turning: [Self; 2], reach: f64) -> Self;
+    /// where it may be; the vertices are no further apart than `length`.
+    fn half_tangent(from: &Sight<Self>, to: &Sight<Self>, length: f64, reach: f64) -> Self;
     /// Sine and cosine of the same angle.
-    fn sine_cosine(from: &Sight<Self>, to: &Sight<Self>, turning: [Self; 2], reach: f64) -> [Self; 2];
+    fn sine_cosine(from: &Sight<Self>, to: &Sight<Self>, length: f64, reach: f64) -> [Self; 2];
     /// How far from the middle a vector may be.
     fn reach(vector: [Self; 2]) -> f64;
+    /// A number that is not smaller.
+    fn most(self) -> f64;
     /// A number near it, by which one of two equal formulas is chosen.
     fn near(self) -> f64;
 
@@ -42,6 +44,8 @@ pub(super) struct Sight<T> {
     pub pull: [T; 2],
     /// By how large an angle its direction may be off for other reasons than where the point is.
     pub slack: f64,
+    /// At least `1 / sqrt(r (r - d))`, where `r` is its distance from the middle and the point within `d` of it.
+    pub width: f64,
 }
 
 /// Sine and cosine of the angle from one unit vector to another.
@@ -71,17 +75,20 @@ impl Number for f64 {
     fn sight([x, y]: [Self; 2], _: [Self; 2]) -> Sight<Self> {
         let inverse = 1.0 / Self::length(x, y);
         let unit = [x * inverse, y * inverse];
-        Sight { unit, inverse, pull: unit.map(|c| c * inverse), slack: 0.0 }
+        Sight { unit, inverse, pull: unit.map(|c| c * inverse), slack: 0.0, width: 0.0 }
     }
     #[inline(always)]
-    fn half_tangent(from: &Sight<Self>, to: &Sight<Self>, _: [Self; 2], _: f64) -> Self {
+    fn half_tangent(from: &Sight<Self>, to: &Sight<Self>, _: f64, _: f64) -> Self {
         half_tangent(from.unit, to.unit)
     }
-    fn sine_cosine(from: &Sight<Self>, to: &Sight<Self>, _: [Self; 2], _: f64) -> [Self; 2] {
+    fn sine_cosine(from: &Sight<Self>, to: &Sight<Self>, _: f64, _: f64) -> [Self; 2] {
         sine_cosine(from.unit, to.unit)
     }
     fn reach(_: [Self; 2]) -> f64 {
         0.0
+    }
+    fn most(self) -> f64 {
+        self
     }
     fn near(self) -> f64 {
         self
@@ -243,6 +250,7 @@ impl Number for Ball {
                 inverse: Self::UNKNOWN,
                 pull: [Self::UNKNOWN; 2],
                 slack: f64::NAN,
+                width: f64::NAN,
             };
         }
         let inverse = 1.0 / length;
@@ -254,7 +262,11 @@ impl Number for Ball {
             Self::new(value, (other.abs() + value.abs() * turned) * turned + 8.0 * f64::EPSILON)
         };
         let own = (x.radius - common[0].radius).abs() + (y.radius - common[1].radius).abs();
+        // Distances at the middle, and at the end of a path from there.
+        let at_middle = (length - own) * (1.0 - 16.0 * f64::EPSILON) - 1e-150;
+        let at_end = ((length - reach - own) * (1.0 - 16.0 * f64::EPSILON) - 1e-150).max(0.0);
         Sight {
+            width: UPWARD / (at_middle * at_end).sqrt(),
             unit: [rounded(unit[0], unit[1]), rounded(unit[1], unit[0])],
             inverse: Self::new(inverse, relative * inverse),
             pull: unit.map(|c| Self::new(c * inverse, relative * inverse)),
@@ -262,11 +274,11 @@ impl Number for Ball {
         }
     }
     #[inline(always)]
-    fn half_tangent(from: &Sight<Self>, to: &Sight<Self>, turning: [Self; 2], reach: f64) -> Self {
+    fn half_tangent(from: &Sight<Self>, to: &Sight<Self>, length: f64, reach: f64) -> Self {
         let [[a, b], [c, d]] = [from, to].map(|sight| sight.unit.map(|c| c.middle));
         let (cosine, sine) = (a * c + b * d, a * d - b * c);
         let middle = if cosine < 0.0 { (1.0 - cosine) / sine } else { sine / (1.0 + cosine) };
-        let half = 0.5 * spread(from, to, turning, reach);
+        let half = 0.5 * spread(from, to, length, reach);
         if !(half < 0.5) {
             return Self::UNKNOWN;
         }
@@ -280,15 +292,18 @@ impl Number for Ball {
     }
     /// `|sin(a + h) - sin a| <= |cos a| h + |sin a| h^2 / 2`, and the other way round.
     #[inline(always)]
-    fn sine_cosine(from: &Sight<Self>, to: &Sight<Self>, turning: [Self; 2], reach: f64) -> [Self; 2] {
+    fn sine_cosine(from: &Sight<Self>, to: &Sight<Self>, length: f64, reach: f64) -> [Self; 2] {
         let [sine, cosine] = sine_cosine(from.unit.map(|c| c.middle), to.unit.map(|c| c.middle));
-        let angle = spread(from, to, turning, reach);
+        let angle = spread(from, to, length, reach);
         let ball = |value: f64, other: f64| Self::new(value, (other.abs() + value.abs() * angle) * angle);
         [ball(sine, cosine), ball(cosine, sine)]
     }
     #[inline(always)]
     fn reach([x, y]: [Self; 2]) -> f64 {
         (x.radius * x.radius + y.radius * y.radius).sqrt() * UPWARD + 1e-150
+    }
+    fn most(self) -> f64 {
+        self.high()
     }
     #[inline(always)]
     fn near(self) -> f64 {
@@ -301,10 +316,13 @@ impl Number for Ball {
 }
 
 /// By how much the angle from one vertex to another may differ from the one between the middles, and this be rounded.
+///
+/// Its gradient has the size `length / (r r')` with the distances `r`, `r'` of the vertices. On a path of length `d` from the
+/// middle they are at least `r - t` and `r' - t`. By Cauchy and Schwarz the integral of `1 / ((r - t) (r' - t))` is at most
+/// the root of the product of those of the squares, `d / (r (r - d))` and `d / (r' (r' - d))`.
 #[inline(always)]
-fn spread(from: &Sight<Ball>, to: &Sight<Ball>, turning: [Ball; 2], reach: f64) -> f64 {
-    let size = (turning[0].size() * turning[0].size() + turning[1].size() * turning[1].size()).sqrt();
-    (size * reach + from.slack + to.slack + 64.0 * f64::EPSILON) * UPWARD
+fn spread(from: &Sight<Ball>, to: &Sight<Ball>, length: f64, reach: f64) -> f64 {
+    (length * reach * from.width * to.width + from.slack + to.slack + 64.0 * f64::EPSILON) * UPWARD
 }
 
 #[cfg(test)]
