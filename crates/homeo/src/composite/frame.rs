@@ -217,10 +217,8 @@ impl<'a, T: Number> Frame<'a, T> {
         let (half, reach) = (T::of(0.5), T::reach(offset));
         for (i, tangent) in self.tangents.iter_mut().enumerate() {
             let k = self.step.next[i] as usize;
-            if v.is_some_and(|v| i == v || k == v) {
-                continue;
-            }
-            if guide.near_edge == Some(i) {
+            // Treated by themselves; what another box left here must go.
+            if v.is_some_and(|v| i == v || k == v) || guide.near_edge == Some(i) {
                 *tangent = [T::of(0.0); 3];
                 continue;
             }

@@ -130,7 +130,7 @@ fn enclosures_hold_values_up_to_vertices_and_edges() {
                         points.evaluate(inside(s, part[0]), inside(lambda, part[1]), &Guide::NONE);
                     if !around.determinant.radius.is_nan() {
                         known += 1;
-                        assert!(holds(around.determinant, determinant), "{s:?} {lambda:?} {part:?}: {determinant}");
+                        assert!(holds(around.determinant, determinant), "{s:?} {lambda:?} {part:?}: {determinant}, not {:?} in {chart:?}, {guide:?}", around.determinant);
                         assert!((0..2).all(|k| holds(around.image[k], image[k])), "{s:?} {lambda:?}: {image:?}");
                     }
                 }
