@@ -79,8 +79,8 @@ impl JacobianVerdict {
 /// If there are not as many images as vertices.
 ///
 /// # Complexity
-/// Boxes times vertices, about 0.2 µs each; boxes are some tens for each vertex when the map is near a linear one
-/// everywhere.
+/// Boxes times vertices, about 0.1 µs each; boxes are some 200 to 500 for each vertex of a regular polygon when the map is near
+/// a linear one.
 ///
 /// # References
 /// The determinant is that of Schneider 2017, section 4.5.3, who samples it. Charts and proof: `docs/theory/composite.md`.

@@ -2,7 +2,7 @@
 
 use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 
-use super::chart::Step;
+use super::chart::{Part, Step};
 use super::frame::{Frame, Local};
 use super::guide::Guide;
 use super::number::Ball;
@@ -35,14 +35,20 @@ fn hole(radius: f64) -> Vec<Point2> {
     square(radius).into_iter().rev().collect()
 }
 
-/// A hook and a frame, with images that differ a little from an affine image of theirs.
+/// Where points are added inside.
+fn round() -> Vec<Point2> {
+    let angles = (0..16).map(|k| std::f64::consts::TAU * f64::from(k) / 16.0);
+    angles.map(|angle| [angle.cos(), angle.sin()]).collect()
+}
+
+/// A hook, a frame and a round polygon, with images that differ a little from an affine image of theirs.
 fn examples() -> Vec<Step> {
     let moved = |rings: &[Vec<Point2>]| -> Vec<Point2> {
         let wave = |p: &Point2| [p[0] + 0.2 * p[1] + 0.05 * (3.0 * p[1]).sin(), 1.1 * p[1] + 0.04 * (5.0 * p[0]).cos()];
         rings.iter().flatten().map(wave).collect()
     };
     let frame = vec![square(2.0), hole(1.0)];
-    [vec![hook()], frame].into_iter().map(|rings| step(rings.clone(), &moved(&rings))).collect()
+    [vec![hook()], frame, vec![round()]].into_iter().map(|rings| step(rings.clone(), &moved(&rings))).collect()
 }
 
 /// Numbers from 0 to 1, from a fixed seed.
@@ -130,7 +136,11 @@ fn enclosures_hold_values_up_to_vertices_and_edges() {
                         points.evaluate(inside(s, part[0]), inside(lambda, part[1]), &Guide::NONE);
                     if !around.determinant.radius.is_nan() {
                         known += 1;
-                        assert!(holds(around.determinant, determinant), "{s:?} {lambda:?} {part:?}: {determinant}, not {:?} in {chart:?}, {guide:?}", around.determinant);
+                        assert!(
+                            holds(around.determinant, determinant),
+                            "{s:?} {lambda:?} {part:?}: {determinant}, not {:?} in {chart:?}, {guide:?}",
+                            around.determinant
+                        );
                         assert!((0..2).all(|k| holds(around.image[k], image[k])), "{s:?} {lambda:?}: {image:?}");
                     }
                 }
@@ -203,6 +213,16 @@ fn bounds_do_not_depend_on_threads() {
         };
         assert_eq!(with(1), with(3));
     }
+}
+
+#[test]
+fn examples_have_charts_of_all_kinds() {
+    let charts: Vec<_> = examples().into_iter().flat_map(|step| step.charts).collect();
+    for part in [Part::Whole, Part::Half, Part::Sixth] {
+        assert!(charts.iter().any(|chart| chart.part == part), "{part:?}");
+    }
+    let round = step(vec![round()], &round());
+    assert!(round.charts.iter().any(|chart| !round.is_vertex(chart.corners[0])), "an apex is an added point");
 }
 
 #[test]

@@ -41,8 +41,8 @@ pub struct Tiling {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Angles are made as large as this where vertices of the domain allow it. Proved to end below 20.7; more mostly works, and
-/// the number of added points is limited anyway.
+/// Angles are made as large as this where edges of the domain, which are not split, allow it. The refinement is known to end
+/// by itself for smaller ones; the number of added points is limited anyway.
 const DEGREES: f64 = 25.0;
 /// So many points are added for each vertex, at most.
 const ADDED: usize = 12;
