@@ -65,7 +65,7 @@ fn meeting_edges(domain: &PlanarDomain, at: BallPoint) -> Option<usize> {
     let meets = |[p, q]: &[Point2; 2]| {
         let is_apart = (0..2).any(|k| p[k].max(q[k]) < low[k] || p[k].min(q[k]) > high[k]);
         let signs = corners.map(|corner| orient2d(*p, *q, corner));
-        !is_apart && !(signs.iter().all(|s| *s == Sign::Positive) || signs.iter().all(|s| *s == Sign::Negative))
+        !(is_apart || signs.iter().all(|s| *s == Sign::Positive) || signs.iter().all(|s| *s == Sign::Negative))
     };
     let meeting: Vec<[Point2; 2]> = domain.edges().filter(meets).collect();
     let is_inside = |p: Point2| (0..2).all(|k| low[k] <= p[k] && p[k] <= high[k]);

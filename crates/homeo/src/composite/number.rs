@@ -1,4 +1,5 @@
 //! Numbers that a chart is evaluated with: doubles, and disks of reals that hold the exact result.
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "what is not a number must fail")]
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -215,6 +216,7 @@ impl Mul for Ball {
 
 impl Div for Ball {
     type Output = Self;
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "a quotient is a product with an inverse")]
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         self * other.inverse()
