@@ -7,6 +7,7 @@
 //! What is proved about a map is re-established by the separate checker `homeo-verify`.
 
 pub mod certificate;
+pub mod composite;
 pub mod construct;
 pub mod coordinates;
 pub mod export;

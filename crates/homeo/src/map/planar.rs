@@ -21,6 +21,9 @@ pub enum PlanarEvaluationError {
     /// A coordinate is not finite.
     #[error("the point has a coordinate that is not a finite number")]
     NotFinite,
+    /// The answer could not be enclosed: the point is within rounding of a vertex, after this many steps.
+    #[error("rounding leaves the answer open after step {0}")]
+    NotProved(usize),
 }
 
 /// A homeomorphism between planar domains whose vertices correspond, linear on every edge.

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::io::Cursor;
 
 use homeo::certificate::{Provenance, StoredMap, read_map, write_harmonic};
+use homeo::composite::{CompositeMap, LinearPath, PartitionParams};
 use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
 use homeo::map::{HarmonicMap, PlanarBijection, PlanarEvaluationError};
 use homeo::progress::Silent;
@@ -125,24 +126,41 @@ fn check(pair: &DomainPair, turn: Option<f64>, middle: MiddleShape) {
         let quick = map.forward(point).expect("inside");
         let is_near = |k: usize| (there[k].to_f64() - quick.point[k]).abs() <= quick.radius.next_up();
         assert!(is_near(0) && is_near(1), "{point:?}: {quick:?} is not {there:?}");
-        assert!(quick.radius < 1e-7, "{quick:?}");
-        let back = map.inverse(quick.point).expect("the image is inside, or next to it").point;
-        assert!((back[0] - point[0]).hypot(back[1] - point[1]) < 1e-6, "{point:?} -> {back:?}");
     }
+    check_any(&map, pair);
     // Edges go to edges, linearly.
     for ((edge, share), goal) in on_edges.iter().zip(pair.target.edges()) {
         assert_eq!(map.forward_exact(&along(*edge, share)), Ok(along(goal, share)), "{edge:?} at {share:?}");
     }
-    let far = pair.source.diagonal() * 3.0;
-    assert_eq!(map.forward([far, far]), Err(PlanarEvaluationError::Outside("source")));
-    assert_eq!(map.inverse([far, -far]), Err(PlanarEvaluationError::Outside("target")));
-    assert_eq!(map.forward([f64::NAN, 0.0]), Err(PlanarEvaluationError::NotFinite));
-    check_rows(&map, &pair.target);
     check_file(&map, pair, || build(pair, turn, middle));
 }
 
+/// What every map between planar domains must do.
+fn check_any(map: &dyn PlanarBijection, pair: &DomainPair) {
+    assert_eq!((map.source(), map.target()), (&pair.source, &pair.target));
+    let (inside, on_edges) = points(&pair.source);
+    let images = map.forward_batch(&inside);
+    for (&point, image) in inside.iter().zip(images) {
+        let image = image.expect("inside");
+        assert_eq!(map.forward(point), Ok(image), "a batch differs");
+        assert!(image.radius < 1e-7, "{image:?}");
+        let back = map.inverse(image.point).expect("the image is inside, or next to it");
+        assert!(back.radius < 1e-6, "{back:?}");
+        assert!((back.point[0] - point[0]).hypot(back.point[1] - point[1]) < 1e-6, "{point:?} -> {back:?}");
+    }
+    for (&([a, _], _), [goal, _]) in on_edges.iter().zip(pair.target.edges()) {
+        assert_eq!(map.forward(a).map(|image| image.point), Ok(goal), "a vertex goes to its vertex");
+        assert_eq!(map.inverse(goal).map(|image| image.point), Ok(a), "and back");
+    }
+    let far = pair.source.diagonal() * 3.0;
+    assert_eq!(map.forward([far, far]), Err(PlanarEvaluationError::Outside("source")));
+    assert_eq!(map.inverse([far, -far]), Err(PlanarEvaluationError::Outside("target")));
+    assert!(map.forward([f64::NAN, 0.0]).is_err());
+    check_rows(map, &pair.target);
+}
+
 /// Rows of points are the same points one by one, up to rounding.
-fn check_rows(map: &HarmonicMap, target: &PlanarDomain) {
+fn check_rows(map: &dyn PlanarBijection, target: &PlanarDomain) {
     let [low, high] = target.bounds();
     let mut found = 0;
     for row in 1..8 {
@@ -237,6 +255,17 @@ fn turns_are_those_asked_for() {
         }
         let turn = angles[angles.len() - 1] - angles[0];
         assert!((turn - turned).abs() < 1.5, "{asked:?}: turned by {turn}, not by {turned}");
+    }
+}
+
+#[test]
+fn composite_mean_value_maps_obey_the_same_laws() {
+    let arrow = vec![vec![[0.0, 0.0], [1.0, 0.0], [0.35, 0.3], [0.0, 1.0]]];
+    for pair in [pair(square(), arrow), pair(ring(0.0, [0.0, 0.0]), ring(0.4, [0.1, 0.0]))] {
+        let path = LinearPath::new(pair.clone());
+        let (map, info) = CompositeMap::build(&path, &PartitionParams::default(), &Silent).expect("a map");
+        assert!(info.least_determinant > 0.0 && map.bounds().iter().all(|&bound| bound > 0.0));
+        check_any(&map, &pair);
     }
 }
 

@@ -1,0 +1,76 @@
+//! Composite mean value maps of all pairs of polygons in a folder, vertices going straight ahead.
+//!
+//! Usage: `cargo run --release -p homeo --example composite_table -- FOLDER [STEPS] [SECONDS]`
+//!
+//! Prints one row of a Markdown table for each file `*.json`: how many vertices and steps, the least Jacobian determinant
+//! that is proved, boxes that were evaluated, seconds; or why there is no map within so many steps (1000) and seconds (60).
+//! Ends with exit code 1 if a file cannot be read.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program")]
+
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use homeo::composite::{CompositeMap, LinearPath, PartitionParams};
+use homeo::progress::Silent;
+use homeo_core::planar::{DomainPair, read_pair};
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let Some(folder) = arguments.first() else {
+        eprintln!("usage: composite_table FOLDER [STEPS] [SECONDS]");
+        return ExitCode::from(2);
+    };
+    let number = |place: usize, usual: u64| arguments.get(place).map_or(Ok(usual), |text| text.parse::<u64>());
+    let (Ok(steps), Ok(seconds)) = (number(1, 1000), number(2, 60)) else {
+        eprintln!("steps and seconds are whole numbers");
+        return ExitCode::from(2);
+    };
+    let timeout = Some(Duration::from_secs(seconds));
+    let params = PartitionParams { steps: steps as usize, timeout, ..PartitionParams::default() };
+    match run(folder.as_ref(), &params) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(folder: &Path, params: &PartitionParams) -> Result<(), String> {
+    let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut files: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
+    files.sort();
+    println!("| pair | vertices | steps | least determinant | boxes | in vain | seconds | |");
+    println!("|---|---|---|---|---|---|---|---|");
+    for path in files {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        println!("| {name} | {}", row(&path, params).map_err(|message| format!("{name}: {message}"))?);
+    }
+    Ok(())
+}
+
+fn row(path: &Path, params: &PartitionParams) -> Result<String, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    let value = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+    let rings = read_pair(&value).map_err(|error| error.to_string())?;
+    let pair = match DomainPair::new(rings.source, rings.target) {
+        Ok(pair) => pair,
+        Err(error) => return Ok(format!(" | | | | | | {error} |")),
+    };
+    let count = pair.source.vertex_count();
+    let start = Instant::now();
+    let built = CompositeMap::build(&LinearPath::new(pair), params, &Silent);
+    let seconds = start.elapsed().as_secs_f64();
+    Ok(match built {
+        Ok((map, info)) => format!(
+            "{count} | {} | {:.3e} | {} | {} | {seconds:.1} | |",
+            map.step_count(),
+            info.least_determinant,
+            info.boxes,
+            info.boxes_in_vain
+        ),
+        Err(error) => format!("{count} | | | | | {seconds:.1} | {error} |"),
+    })
+}

@@ -1,0 +1,34 @@
+//! Composite mean value maps between planar domains, with a proof that they are one-to-one.
+//!
+//! Theorem:     rings of two domains correspond, and the Jacobian determinant of the mean value map is positive in the open
+//!              domain => it is a homeomorphism of the closed domains, linear on every edge; so are compositions.
+//! Source:      Schneider 2017, chapter 4, algorithm 1; Hormann, Floater 2006 (doi 10.1145/1183287.1183295) for mean value
+//!              coordinates of domains with holes.
+//! Differences: the determinant is proved to be positive up to vertices and edges, where the source samples it; nothing is
+//!              asked at vertices; domains may have holes; the inverse is the exact one, enclosed.
+//! Arithmetic:  domains and triangles are decided exactly; the determinant is bounded in balls, rounded outwards; what
+//!              guides the search is rounded and decides nothing.
+//! Cost:        for each step boxes times vertices; boxes are hundreds for each vertex.
+//! Fails when:  an intermediate polygon is not simple, or a step is not proved within its limits -> [`PartitionError`].
+//! See:         `docs/theory/composite.md`.
+
+mod bound;
+mod chart;
+mod evaluate;
+mod frame;
+mod guide;
+mod invert;
+mod map;
+mod number;
+mod partition;
+#[cfg(test)]
+mod tests;
+mod triangulation;
+mod vector;
+
+pub use bound::{JacobianLimits, JacobianVerdict, bound_jacobian};
+pub use evaluate::Jacobian;
+pub use invert::InverseError;
+pub use map::{CompositeError, CompositeInfo, CompositeMap};
+pub use partition::{LinearPath, PartitionError, PartitionParams, VertexPath};
+pub use triangulation::{Tiling, TriangulationError, check_tiling, triangulate};

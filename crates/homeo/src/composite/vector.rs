@@ -1,0 +1,65 @@
+//! Vectors of the plane, and functions of a chart's two coordinates with their derivatives.
+
+use homeo_core::planar::Point2;
+
+use super::number::Number;
+
+pub(super) type Vector<T> = [T; 2];
+
+pub(super) fn dot<T: Number>(a: Vector<T>, b: Vector<T>) -> T {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+pub(super) fn cross<T: Number>(a: Vector<T>, b: Vector<T>) -> T {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+pub(super) fn plus<T: Number>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+pub(super) fn minus<T: Number>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+pub(super) fn scaled<T: Number>(factor: T, a: Vector<T>) -> Vector<T> {
+    [factor * a[0], factor * a[1]]
+}
+
+/// The product of complex numbers.
+pub(super) fn times<T: Number>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+pub(super) fn opposite<T: Number>(a: Vector<T>) -> Vector<T> {
+    a.map(T::opposite)
+}
+
+pub(super) fn of<T: Number>(a: Point2) -> Vector<T> {
+    a.map(T::of)
+}
+
+/// A function of `s` and `λ`: its value and its derivatives `∂/∂s` and `∂/∂λ - skew s ∂/∂s`.
+#[derive(Clone, Copy)]
+pub(super) struct Dual<T>(pub [T; 3]);
+
+impl<T: Number> Dual<T> {
+    pub fn plus(self, other: Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k] + other.0[k]))
+    }
+    pub fn times(self, other: Self) -> Self {
+        let ([a, a1, a2], [b, b1, b2]) = (self.0, other.0);
+        Self([a * b, a1 * b + a * b1, a2 * b + a * b2])
+    }
+    pub fn times_constant(self, factor: T) -> Self {
+        Self(self.0.map(|c| c * factor))
+    }
+    pub fn with(self, factor: Option<Self>) -> Self {
+        factor.map_or(self, |factor| self.times(factor))
+    }
+    pub fn over(self, other: Self) -> Self {
+        let ([a, a1, a2], [b, b1, b2]) = (self.0, other.0);
+        let quotient = a / b;
+        Self([quotient, (a1 - quotient * b1) / b, (a2 - quotient * b2) / b])
+    }
+}
