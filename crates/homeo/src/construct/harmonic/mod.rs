@@ -87,6 +87,7 @@ pub enum HarmonicError {
 ///
 /// ```
 /// use homeo::construct::harmonic::{HarmonicParams, harmonic_map};
+/// use homeo::map::PlanarBijection;
 /// use homeo::progress::Silent;
 /// use homeo_core::planar::DomainPair;
 /// let square = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
