@@ -269,6 +269,29 @@ fn composite_mean_value_maps_obey_the_same_laws() {
     }
 }
 
+/// The size of coordinates does not matter, nor how thin a shape is.
+#[test]
+fn sizes_and_thin_spikes_do_no_harm() {
+    for scale in [1e-80, 1e-30, 1e30, 1e80] {
+        let scaled = |rings: Rings| rings.iter().map(|r| r.iter().map(|p| p.map(|x| x * scale)).collect()).collect();
+        let pair = pair(scaled(square()), scaled(star(2, 0.3)));
+        let map = build(&pair, None, MiddleShape::default());
+        let point = exact([0.25 * scale, 0.5 * scale]);
+        assert_eq!(map.inverse_exact(&map.forward_exact(&point).expect("inside")), Ok(point), "{scale:e}");
+        assert!(matches!(verify_bytes(&bytes_of(&map)), Ok(Verdict::Certified(_))), "{scale:e}");
+    }
+    // Thousands of times as long as wide, everywhere.
+    let spiky = |k: usize| if k.is_multiple_of(2) { 1.0 } else { 0.002 };
+    let place = |k: usize| {
+        let angle = TAU * k as f64 / 120.0;
+        [spiky(k) * angle.cos(), spiky(k) * angle.sin()]
+    };
+    let spikes = vec![(0..120).map(place).collect()];
+    let map = build(&pair(spikes, vec![round(120, |_| 1.0, 0.0)]), None, MiddleShape::default());
+    assert!(map.source_half().vertex_count() < 50_000, "{} vertices", map.source_half().vertex_count());
+    assert!(matches!(verify_bytes(&bytes_of(&map)), Ok(Verdict::Certified(_))));
+}
+
 #[test]
 fn several_holes_are_refused() {
     let hole = |x: f64| vec![[x, 0.1], [x + 0.1, 0.2], [x + 0.1, 0.1]];

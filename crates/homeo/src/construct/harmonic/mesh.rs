@@ -25,13 +25,17 @@ pub(super) fn triangulate(
 ) -> Result<Mesh, HarmonicError> {
     let failed = |what: &str| HarmonicError::Triangulation(what.to_owned());
     let boundary: Vec<Point2> = rings.iter().flatten().copied().collect();
+    // Scaled by a power of two, which rounds nothing, coordinates of any size suit the triangulation.
+    let scale = scale_of(&boundary);
+    let scaled = |p: &Point2| p.map(|x| x * scale).map(|x| if x.abs() < LEAST_COORDINATE { 0.0 } else { x });
+    let largest_area = largest_area * scale * scale;
     let mut constraints = Vec::with_capacity(boundary.len());
     let mut first = 0;
     for ring in rings {
         constraints.extend((0..ring.len()).map(|i| [first + i, first + (i + 1) % ring.len()]));
         first += ring.len();
     }
-    let points = boundary.iter().map(|p| spade::Point2::new(p[0], p[1])).collect();
+    let points = boundary.iter().map(scaled).map(|p| spade::Point2::new(p[0], p[1])).collect();
     let mut plane =
         ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::try_bulk_load_cdt(points, constraints, |_| {})
             .map_err(|e| HarmonicError::Triangulation(e.to_string()))?;
@@ -47,13 +51,14 @@ pub(super) fn triangulate(
     let refined = plane.refine(parameters);
     let outside: HashSet<usize> = refined.excluded_faces.iter().map(|face| face.index()).collect();
     let numbers: HashMap<[u64; 2], u32> =
-        boundary.iter().enumerate().map(|(i, p)| (p.map(f64::to_bits), i as u32)).collect();
+        boundary.iter().enumerate().map(|(i, p)| (scaled(p).map(|x| (x + 0.0).to_bits()), i as u32)).collect();
     let mut inner = Vec::new();
     let mut number = vec![u32::MAX; plane.num_vertices()];
     for vertex in plane.vertices() {
-        let point = [vertex.position().x, vertex.position().y];
+        // Zero has two signs.
+        let point = [vertex.position().x + 0.0, vertex.position().y + 0.0];
         number[vertex.index()] = numbers.get(&point.map(f64::to_bits)).copied().unwrap_or_else(|| {
-            inner.push(point);
+            inner.push(point.map(|x| x / scale));
             (boundary.len() + inner.len() - 1) as u32
         });
     }
@@ -63,6 +68,16 @@ pub(super) fn triangulate(
         .map(|face| face.vertices().map(|v| number[v.index()]))
         .collect();
     Ok(Mesh { boundary, inner, triangles })
+}
+
+/// Smaller coordinates, of a domain of about size 1, are taken for 0; what comes of it is tested exactly.
+const LEAST_COORDINATE: f64 = 1e-40;
+
+/// A power of two that makes the largest coordinate about 1.
+fn scale_of(points: &[Point2]) -> f64 {
+    let largest = points.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
+    let exponent = -(largest.log2().round()).clamp(-900.0, 900.0);
+    if exponent.is_finite() { 2f64.powi(exponent as i32) } else { 1.0 }
 }
 
 impl Mesh {

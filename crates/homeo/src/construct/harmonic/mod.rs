@@ -130,7 +130,7 @@ fn half(
     let largest_area = area(domain) / triangles.max(1) as f64;
     // Triangles with equal sides and this area.
     let spacing = (largest_area * 4.0 / 3f64.sqrt()).sqrt();
-    let boundary = boundary::boundary_points(domain, spacing);
+    let boundary = boundary::boundary_points(domain, spacing, 2 * triangles + 8 * domain.vertex_count() + 2_000);
     go_on()?;
     let mut rings: Vec<Vec<Point2>> = vec![Vec::new(); domain.rings().len()];
     for point in &boundary {
