@@ -25,15 +25,16 @@ fn cage(n: usize, wave: f64) -> Vec<Vec<Point2>> {
 }
 
 fn least_of<T>(runs: usize, mut work: impl FnMut() -> T) -> (f64, T) {
-    let mut best = f64::INFINITY;
-    let mut result = None;
-    for _ in 0..runs {
+    let mut timed = || {
         let start = Instant::now();
         let made = work();
-        best = best.min(start.elapsed().as_secs_f64());
-        result = Some(made);
-    }
-    (best, result.unwrap_or_else(|| unreachable!("there is a run")))
+        (start.elapsed().as_secs_f64(), made)
+    };
+    let first = timed();
+    (1..runs).fold(first, |(best, _), _| {
+        let (seconds, made) = timed();
+        (best.min(seconds), made)
+    })
 }
 
 fn main() {

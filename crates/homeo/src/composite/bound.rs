@@ -72,11 +72,8 @@ impl JacobianVerdict {
 /// towards them. [`JacobianVerdict::Negative`] is proved at its point. Nothing depends on the number of threads.
 ///
 /// # Errors
-/// The triangles do not tile the domain. They only say in which pieces to prove; [`triangulate`](super::triangulate)
+/// There are not as many images as vertices, or the triangles do not tile the domain. They only say in which pieces to prove; [`triangulate`](super::triangulate)
 /// makes some.
-///
-/// # Panics
-/// If there are not as many images as vertices.
 ///
 /// # Complexity
 /// Boxes times vertices, about 0.1 µs each; boxes are some 200 to 500 for each vertex of a regular polygon when the map is near
@@ -96,6 +93,7 @@ impl JacobianVerdict {
 /// assert!(matches!(verdict, JacobianVerdict::Positive { least, .. } if least > 5.9 && least <= 6.0));
 /// let verdict = bound(&[[0.0, 0.0], [1.0, 0.0], [0.1, 0.1], [0.0, 1.0]]);
 /// assert!(matches!(verdict, JacobianVerdict::Negative { .. }));
+/// assert!(bound_jacobian(&square, &tiling, &[[0.0, 0.0]], &limits).is_err(), "four images are needed");
 /// ```
 pub fn bound_jacobian(
     domain: &PlanarDomain,
@@ -103,7 +101,10 @@ pub fn bound_jacobian(
     images: &[Point2],
     limits: &JacobianLimits,
 ) -> Result<JacobianVerdict, TriangulationError> {
-    assert_eq!(images.len(), domain.vertex_count(), "each vertex needs an image");
+    let vertices = domain.vertex_count();
+    if images.len() != vertices {
+        return Err(TriangulationError::OtherCount { vertices, images: images.len() });
+    }
     check_tiling(domain, tiling)?;
     Ok(Step::new(domain, tiling, images.to_vec()).bound(limits, &|| false))
 }

@@ -20,6 +20,14 @@ pub enum TriangulationError {
     /// The edges of the triangles do not pair up but for those of the domain.
     #[error("the edge from vertex {0} to vertex {1} is not where one triangle, or the boundary, ends and one begins")]
     Unpaired(u32, u32),
+    /// There is not one image for each vertex.
+    #[error("{images} images were given for {vertices} vertices")]
+    OtherCount {
+        /// How many vertices there are.
+        vertices: usize,
+        /// How many images were given.
+        images: usize,
+    },
 }
 
 /// The next vertex of the same ring, for each vertex. Vertices are numbered ring after ring.
