@@ -478,6 +478,7 @@ pub struct ReportArgs {
 #[command(after_help = "Examples:
   homeo warp testdata/images/checker.png --from testdata/polygons/square.json --to testdata/polygons/arrow.json -o warped.png
   homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo
+  homeo warp testdata/images/checker.png --pair testdata/polygons/hole_turned.json --method mean-value -o smooth.png
 
 Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is
 {\"source\": ..., \"target\": ...}. Vertices correspond by number. What lies outside the target becomes
@@ -496,6 +497,9 @@ pub struct WarpArgs {
     /// Keep the map with its certificate
     #[arg(long, value_name = "MAP.homeo")]
     pub map: Option<PathBuf>,
+    /// How the map is made
+    #[arg(long, value_enum, value_name = "METHOD", default_value_t = MethodName::Harmonic, conflicts_with = "landmarks")]
+    pub method: MethodName,
     #[command(flatten)]
     pub polygons: PolygonArgs,
     /// Save where every pixel of the result comes from, as float32 of shape (height, width, 2): what `remap` takes
@@ -530,6 +534,9 @@ pub struct PolygonArgs {
     /// Polygons with a hole: by how much its rim turns [default: the pair's `winding_hint`, or as little as possible]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub turn: Option<f64>,
+    /// How the polygon moves, for the frames of a morph and for mean value maps
+    #[arg(long, value_enum, value_name = "PATH", default_value_t = PathName::Auto)]
+    pub path: PathName,
 }
 
 #[derive(Debug, Args)]
@@ -557,9 +564,6 @@ pub struct MorphArgs {
     /// One file for each frame, numbered before the extension (.png or .jpg)
     #[arg(long)]
     pub separate: bool,
-    /// How the polygon moves
-    #[arg(long, value_enum, value_name = "PATH", default_value_t = PathName::Auto)]
-    pub path: PathName,
 }
 
 #[derive(Debug, Args)]
@@ -583,15 +587,26 @@ pub struct BlendArgs {
     pub frames: u32,
 }
 
+/// How a map between polygons is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// Piecewise linear, through a convex polygon: there is one for every pair, and it has exact images
+    Harmonic,
+    /// Smooth: mean value maps from one polygon to the next on the way, as many as it takes
+    MeanValue,
+}
+
 /// How a polygon becomes another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PathName {
-    /// By lengths and angles if that gives polygons that do not cross themselves, else straight
+    /// The first that gives polygons which do not cross themselves: angles, straight, turning; with a hole turning first
     Auto,
     /// Every vertex on a straight line
     Straight,
     /// Edge lengths and angles change evenly: turned parts turn and do not shrink
     Angles,
+    /// Every ring turns about its middle, and changes straight in its turning frame
+    Turning,
 }
 
 /// Where polygons lie on a picture.

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use homeo::certificate::{FoliationMap, StoredMap, read_map};
 use homeo::input::SourceMesh;
-use homeo::map::PlanarBijection;
 use homeo::progress::Progress;
 use homeo_core::planar::PlanarDomain;
 use homeo_verify::{Claim, Obstacle, Unreadable, Verdict, Witness, verify_bytes};
@@ -156,7 +155,7 @@ pub fn map_json(map: &StoredMap, path: &Path) -> Value {
         StoredMap::Foliation(FoliationMap::Surface(map)) => source_json(map.source(), path),
         StoredMap::Foliation(FoliationMap::Volume(map)) => source_json(map.source(), path),
         StoredMap::Shell(shell) => source_json(shell.source(), path),
-        StoredMap::Harmonic(map) => domain_json(map.source(), path),
+        StoredMap::Planar(map) => domain_json(map.as_bijection().source(), path),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use homeo::certificate::{FoliationMap, StoredMap};
+use homeo::certificate::{FoliationMap, PlanarMap, StoredMap};
 use homeo::export::{ReportData, VerdictWords, planar_page, report_of_map, report_of_shell, write_report};
 use homeo::map::{Bijection, PlanarBijection, Shell};
 use homeo::progress::Progress;
@@ -41,11 +41,15 @@ pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Re
             stage_shell(session, &options.output, &title, &shell, &claim, outputs)?;
             (title, json!({"prisms": shell.parts().prisms.len()}))
         }
-        StoredMap::Harmonic(map) => {
+        StoredMap::Planar(map) => {
             session.stage("write");
             let title = title(&options.map, "target polygon");
-            stage_planar(session, &options.output, &title, &map, &claim, outputs)?;
-            (title, json!({"triangles": map.source_half().parts().triangles.len()}))
+            stage_planar(session, &options.output, &title, map.as_bijection(), &claim, outputs)?;
+            let size = match map {
+                PlanarMap::Harmonic(map) => json!({"triangles": map.source_half().parts().triangles.len()}),
+                PlanarMap::Composite(map) => json!({"steps": map.step_count()}),
+            };
+            (title, size)
         }
     };
     session.end_stage();

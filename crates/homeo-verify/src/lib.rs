@@ -8,19 +8,24 @@
 //! 2. `complex`, `links`, `number`: neighbours, manifolds, exact signs;
 //! 3. `source` (rules S, 8), `subdivision` (R), `foliation` (1-6, 8), `section` (7), `piecewise_linear` (P, 7);
 //! 4. `triangles`, `shell` (L1-L6, of `docs/theory/shells.md`);
-//! 5. `rings` (D), `harmonic` (H1-H5, of `docs/theory/polygons.md`).
+//! 5. `rings` (D), `harmonic` (H1-H5, of `docs/theory/polygons.md`);
+//! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3.
 //!
 //! # Complexity
 //! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file. For
-//! shells also the number of pairs, of a source triangle and a prism, whose boxes meet.
+//! shells also the number of pairs, of a source triangle and a prism, whose boxes meet. Composite mean value maps: for each
+//! step some hundred to thousand boxes for each vertex, each of `O(N)`; on all processors.
 
 mod archive;
+mod ball;
 mod complex;
+mod composite;
 mod foliation;
 mod harmonic;
 mod links;
 mod manifest;
 mod map_file;
+mod mean_value;
 mod npy;
 mod number;
 mod piecewise_linear;
@@ -138,16 +143,20 @@ pub fn compare_source(
 pub fn compare_polygon(bytes: &[u8], rings: &[Vec<[f64; 2]>]) -> Result<SourceMatch, Unreadable> {
     let map = MapFile::read(bytes)?;
     let different = |text: String| Ok(SourceMatch::Different(format!("the map's source {text}")));
-    let MapData::Harmonic(data) = &map.data else { return different("is a mesh".to_owned()) };
+    let (ring_sizes, points) = match &map.data {
+        MapData::Harmonic(data) => (&data.ring_sizes, &data.source_points),
+        MapData::Composite(data) => (&data.ring_sizes, &data.stages[0]),
+        _ => return different("is a mesh".to_owned()),
+    };
     let sizes: Vec<usize> = rings.iter().map(Vec::len).collect();
-    if !sizes.iter().copied().eq(data.ring_sizes.iter().map(|&n| n as usize)) {
-        return different(format!("has rings of {:?} vertices", data.ring_sizes));
+    if !sizes.iter().copied().eq(ring_sizes.iter().map(|&n| n as usize)) {
+        return different(format!("has rings of {ring_sizes:?} vertices"));
     }
     let bits = |[x, y, _]: [f64; 3]| [x.to_bits(), y.to_bits()];
     let same = |(a, b): (&[f64; 2], &[f64; 3])| a.map(f64::to_bits) == bits(*b);
-    match rings.iter().flatten().zip(&data.source_points).position(|pair| !same(pair)) {
+    match rings.iter().flatten().zip(points).position(|pair| !same(pair)) {
         None => Ok(SourceMatch::Same),
-        Some(v) => different(format!("has vertex {v} at {:?}", &data.source_points[v][..2])),
+        Some(v) => different(format!("has vertex {v} at {:?}", &points[v][..2])),
     }
 }
 
@@ -163,6 +172,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::Shell if is_embedded => ("shell", "theorem on shells, rules L1-L6, E1 and E2"),
         Kind::Shell => ("shell", "theorem on shells, rules L1-L6"),
         Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
+        Kind::CompositeMeanValue => ("composite-mean-value", "theorem on composite mean value maps, rules D and C1-C3"),
     };
     let (target, onto) = match map.manifest.target {
         Target::Square => ("square", "square [0,1]^2"),
@@ -175,6 +185,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::EmbeddedShell => ("embedded-shell", "middle surface"),
         Target::Polygon => ("polygon", "target polygon"),
         Target::Annulus => ("annulus", "target polygon with a hole"),
+        Target::Domain => ("domain", "target polygon with holes"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
     let mut statement = format!(
@@ -205,16 +216,23 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
                         space where sheets cross has an image for each of them.";
         }
     }
-    if let MapData::Harmonic(data) = &map.data {
+    let planar = match &map.data {
+        MapData::Harmonic(data) => Some((data.ring_sizes.len(), String::new())),
+        MapData::Composite(data) => Some((data.ring_sizes.len(), format!("in {} steps ", data.tilings.len()))),
+        _ => None,
+    };
+    if let Some((rings, steps)) = planar {
         statement = format!(
-            "The stored map is a homeomorphism from the domain of {vertices} vertices in {} ring(s) onto the {onto}; it is \
-             linear on every edge ({theorem}).",
-            data.ring_sizes.len()
+            "The stored map is a homeomorphism {steps}from the domain of {vertices} vertices in {rings} ring(s) onto the \
+             {onto}; it is linear on every edge ({theorem})."
         );
         overlaps = "Nothing is said of how much it distorts.";
     }
     let limits = [
-        "The claim is about the complex with these cells and the exact rational map that the file defines.",
+        match &map.data {
+            MapData::Composite(_) => "The claim is about the exact mean value maps of the polygons in the file.",
+            _ => "The claim is about the complex with these cells and the exact rational map that the file defines.",
+        },
         overlaps,
         "Evaluation in floating point approximates this map; it is not the certified object.",
     ];
@@ -236,6 +254,9 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
     if let MapData::Harmonic(data) = &map.data {
         return harmonic::check_harmonic(data);
     }
+    if let MapData::Composite(data) = &map.data {
+        return composite::check_composite(data);
+    }
     let source = source::check_source(map)?;
     let refined = match &map.refinement {
         Some(refinement) => Some(subdivision::check_subdivision(map, refinement, &source)?),
@@ -256,7 +277,7 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
             piecewise_linear::check_onto_box(complex, |v| images[v as usize], "P")?;
             checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
         }
-        MapData::Shell(_) | MapData::Harmonic(_) => {} // above
+        MapData::Shell(_) | MapData::Harmonic(_) | MapData::Composite(_) => {} // above
     }
     Ok(checked)
 }

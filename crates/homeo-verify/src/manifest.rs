@@ -28,6 +28,8 @@ pub(crate) enum Target {
     Polygon,
     /// A planar domain with one hole.
     Annulus,
+    /// A planar domain with several holes.
+    Domain,
 }
 
 impl Target {
@@ -38,7 +40,7 @@ impl Target {
 
     /// Whether maps between planar domains reach it, and no others.
     pub(crate) fn is_planar(self) -> bool {
-        matches!(self, Target::Polygon | Target::Annulus)
+        matches!(self, Target::Polygon | Target::Annulus | Target::Domain)
     }
 
     /// Vertices of a cell: three or four.
@@ -55,6 +57,7 @@ pub(crate) enum Kind {
     PiecewiseLinear,
     Shell,
     CompositeHarmonic,
+    CompositeMeanValue,
 }
 
 /// What the manifest claims.
@@ -120,8 +123,11 @@ impl Manifest {
         readable(is_possible, "only a foliation can reach the disk or the ball")?;
         let is_shell = manifest.kind == Kind::Shell;
         readable(is_shell == manifest.target.is_in_shell(), "kind shell and the targets of shells belong together")?;
-        let is_planar = manifest.kind == Kind::CompositeHarmonic;
+        let is_planar = matches!(manifest.kind, Kind::CompositeHarmonic | Kind::CompositeMeanValue);
         readable(is_planar == manifest.target.is_planar(), "composite maps and planar targets belong together")?;
+        let has_holes = manifest.target == Target::Domain;
+        let is_possible = !has_holes || manifest.kind == Kind::CompositeMeanValue;
+        readable(is_possible, "only composite mean value maps have a target with several holes")?;
         Ok(manifest)
     }
 }

@@ -31,6 +31,7 @@ pub(crate) enum MapData {
     PiecewiseLinear(Vec<Point>),
     Shell(ShellData),
     Harmonic(HarmonicData),
+    Composite(CompositeData),
 }
 
 /// The arrays of a foliation; the section is empty for the ball.
@@ -68,6 +69,23 @@ pub(crate) struct HarmonicData {
     pub(crate) halves: [HalfData; 2],
 }
 
+/// The arrays of a composite mean value map. Third coordinates are 0.
+pub(crate) struct CompositeData {
+    /// How many vertices the rings of all domains have.
+    pub(crate) ring_sizes: Vec<u32>,
+    /// The vertices of each domain, from the source to the target: two domains or more.
+    pub(crate) stages: Vec<Vec<Point>>,
+    /// Of each domain but the last.
+    pub(crate) tilings: Vec<TilingData>,
+}
+
+/// Triangles that tile a domain.
+pub(crate) struct TilingData {
+    /// Corners that are no vertices of the domain, numbered after these.
+    pub(crate) added: Vec<Point>,
+    pub(crate) triangles: Vec<u32>,
+}
+
 /// A triangulated domain.
 pub(crate) struct HalfData {
     /// Ring, edge and share of each vertex on the boundary.
@@ -89,6 +107,13 @@ impl MapFile {
             let (data, positions) = HarmonicData::read(&mut archive, &manifest)?;
             all_taken(&archive)?;
             let data = MapData::Harmonic(data);
+            return Ok(MapFile { manifest, positions, cells: vec![], refinement: None, data });
+        }
+        if manifest.kind == Kind::CompositeMeanValue {
+            let data = CompositeData::read(&mut archive, &manifest)?;
+            all_taken(&archive)?;
+            let positions = data.stages[0].clone();
+            let data = MapData::Composite(data);
             return Ok(MapFile { manifest, positions, cells: vec![], refinement: None, data });
         }
         let (positions, cells) = read_source(&mut archive, &manifest)?;
@@ -197,20 +222,62 @@ impl FoliationData {
     }
 }
 
+/// The vertices of a planar source and the sizes of its rings, when it is the one of the manifest.
+fn read_planar_source(archive: &mut Archive, manifest: &Manifest) -> Result<(Vec<Point>, Vec<u32>), Unreadable> {
+    let (points, rings) = (Array::take(archive, "source_points")?, Array::take(archive, "source_rings")?);
+    let hash = source_hash([manifest.source.vertices, 2, manifest.source.cells], [&points, &rings]);
+    let (source_points, ring_sizes) = (points.read_points(None, 2)?, rings.read(U4, None, 1)?);
+    let is_counted = (source_points.len(), ring_sizes.len()) == (manifest.source.vertices, manifest.source.cells);
+    readable(is_counted, "the source has another number of vertices or rings than the manifest says")?;
+    readable(hash == manifest.source.content_sha256, "the source arrays do not have the stated content_sha256")?;
+    let total: u64 = ring_sizes.iter().map(|&n| u64::from(n)).sum();
+    let are_rings = total == source_points.len() as u64 && ring_sizes.iter().all(|&n| n >= 3);
+    readable(are_rings, "the rings do not have three vertices each, and all of them together")?;
+    let is_as_said = match manifest.target {
+        Target::Polygon => ring_sizes.len() == 1,
+        Target::Annulus => ring_sizes.len() == 2,
+        _ => ring_sizes.len() > 2,
+    };
+    readable(is_as_said, "a polygon has one ring, an annulus two, a domain more")?;
+    Ok((source_points, ring_sizes))
+}
+
+impl CompositeData {
+    fn read(archive: &mut Archive, manifest: &Manifest) -> Result<Self, Unreadable> {
+        let (source, ring_sizes) = read_planar_source(archive, manifest)?;
+        let count = source.len();
+        let flat = Array::take(archive, "stage_points")?.read_points(None, 2)?;
+        let is_whole = !flat.is_empty() && flat.len() % count == 0;
+        readable(is_whole, "stage_points does not have one or more domains of as many vertices as the source")?;
+        let steps = flat.len() / count;
+        let stages = std::iter::once(source).chain(flat.chunks_exact(count).map(<[Point]>::to_vec)).collect();
+        let added_counts = Array::take(archive, "added_counts")?.read(U4, Some(steps), 1)?;
+        let triangle_counts = Array::take(archive, "triangle_counts")?.read(U4, Some(steps), 1)?;
+        let added = in_parts(&Array::take(archive, "added_points")?.read_points(None, 2)?, &added_counts, 1)?;
+        let triangles = in_parts(&Array::take(archive, "triangles")?.read(U4, None, 3)?, &triangle_counts, 3)?;
+        let tilings = added.into_iter().zip(triangles).map(|(added, triangles)| TilingData { added, triangles });
+        Ok(CompositeData { ring_sizes, stages, tilings: tilings.collect() })
+    }
+}
+
+/// A list cut into parts of given numbers of rows.
+fn in_parts<T: Clone>(list: &[T], counts: &[u32], row: usize) -> Result<Vec<Vec<T>>, Unreadable> {
+    let total: u64 = counts.iter().map(|&count| u64::from(count)).sum();
+    readable(total == (list.len() / row) as u64, "the counts of a tiling do not add up to its rows")?;
+    let mut rest = list;
+    let parts = counts.iter().map(|&count| {
+        let (part, after) = rest.split_at(row * count as usize);
+        rest = after;
+        part.to_vec()
+    });
+    Ok(parts.collect())
+}
+
 impl HarmonicData {
     /// Reads the map; also the vertices of the source as points.
     fn read(archive: &mut Archive, manifest: &Manifest) -> Result<(Self, Vec<Point>), Unreadable> {
-        let (points, rings) = (Array::take(archive, "source_points")?, Array::take(archive, "source_rings")?);
-        let hash = source_hash([manifest.source.vertices, 2, manifest.source.cells], [&points, &rings]);
-        let (source_points, ring_sizes) = (points.read_points(None, 2)?, rings.read(U4, None, 1)?);
-        let is_counted = (source_points.len(), ring_sizes.len()) == (manifest.source.vertices, manifest.source.cells);
-        readable(is_counted, "the source has another number of vertices or rings than the manifest says")?;
-        readable(hash == manifest.source.content_sha256, "the source arrays do not have the stated content_sha256")?;
-        let total: u64 = ring_sizes.iter().map(|&n| u64::from(n)).sum();
-        let are_rings = total == source_points.len() as u64 && ring_sizes.iter().all(|&n| n >= 3);
-        readable(are_rings, "the rings do not have three vertices each, and all of them together")?;
+        let (source_points, ring_sizes) = read_planar_source(archive, manifest)?;
         let is_cylinder = manifest.target == Target::Annulus;
-        readable(ring_sizes.len() == 1 + usize::from(is_cylinder), "a polygon has one ring, an annulus two")?;
         let count = Some(source_points.len());
         let target_points = Array::take(archive, "target_points")?.read_points(count, 2)?;
         let middle_points = Array::take(archive, "middle_points")?.read_points(count, 2)?;

@@ -27,9 +27,10 @@ pub enum Verdict {
 pub struct Claim {
     /// The claim in words, with the theorem that was applied.
     pub statement: String,
-    /// `foliation`, `piecewise-linear`, `shell` or `composite-harmonic`.
+    /// `foliation`, `piecewise-linear`, `shell`, `composite-harmonic` or `composite-mean-value`.
     pub kind: String,
-    /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon` or `annulus`.
+    /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon`,
+    /// `annulus` or `domain`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]

@@ -1,19 +1,23 @@
-//! Composite mean value maps of all pairs of polygons in a folder, vertices going straight ahead.
+//! Composite mean value maps of all pairs of polygons in a folder, each checked by the independent checker.
 //!
 //! Usage: `cargo run --release -p homeo --example composite_table -- FOLDER [STEPS] [SECONDS]`
 //!
-//! Prints one row of a Markdown table for each file `*.json`: how many vertices and steps, the least Jacobian determinant
-//! that is proved, boxes that were evaluated, seconds; or why there is no map within so many steps (1000) and seconds (60).
-//! Ends with exit code 1 if a file cannot be read.
+//! Prints one row of a Markdown table for each file `*.json`: vertices, path and steps, the least Jacobian determinant that is
+//! proved, boxes that were evaluated, seconds; boxes, seconds and verdict of the checker; or why there is no map within so many
+//! steps (1000) and seconds (60) on any of the paths. Ends with exit code 1 if a file cannot be read.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program")]
 
+use std::io::Cursor;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use homeo::composite::{CompositeMap, LinearPath, PartitionParams};
+use homeo::certificate::{Provenance, write_composite};
+use homeo::composite::{CompositeMap, PartitionParams};
 use homeo::progress::Silent;
+use homeo::shape::{LengthsAndAngles, LinearPath, ShapePath, TurningPath, first_not_simple};
 use homeo_core::planar::{DomainPair, read_pair};
+use homeo_verify::{Verdict, verify_bytes};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -42,8 +46,10 @@ fn run(folder: &Path, params: &PartitionParams) -> Result<(), String> {
     let mut files: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     files.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
     files.sort();
-    println!("| pair | vertices | steps | least determinant | boxes | in vain | seconds | |");
-    println!("|---|---|---|---|---|---|---|---|");
+    println!(
+        "| pair | vertices | path | steps | least determinant | boxes | in vain | seconds | checker: boxes | seconds | verdict |"
+    );
+    println!("|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---|");
     for path in files {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         println!("| {name} | {}", row(&path, params).map_err(|message| format!("{name}: {message}"))?);
@@ -57,20 +63,67 @@ fn row(path: &Path, params: &PartitionParams) -> Result<String, String> {
     let rings = read_pair(&value).map_err(|error| error.to_string())?;
     let pair = match DomainPair::new(rings.source, rings.target) {
         Ok(pair) => pair,
-        Err(error) => return Ok(format!(" | | | | | | {error} |")),
+        Err(error) => return Ok(format!(" | | | | | | | | | {error} |")),
     };
     let count = pair.source.vertex_count();
+    let mut reasons = Vec::new();
+    for (name, path) in paths(&pair, rings.turn_degrees)? {
+        if let Ok(Some(crossing)) = first_not_simple(&*path, 64) {
+            reasons.push(format!("{name}: {crossing}"));
+            continue;
+        }
+        let start = Instant::now();
+        let built = CompositeMap::build(&*path, params, &Silent);
+        let seconds = start.elapsed().as_secs_f64();
+        match built {
+            Ok((map, info)) => {
+                let columns = [
+                    name.to_owned(),
+                    map.step_count().to_string(),
+                    format!("{:.3e}", info.least_determinant),
+                    info.boxes.to_string(),
+                    info.boxes_in_vain.to_string(),
+                    format!("{seconds:.1}"),
+                ];
+                return Ok(format!("{count} | {} | {} |", columns.join(" | "), checked(&map)?));
+            }
+            Err(error) => reasons.push(format!("{name}: {error} ({seconds:.1} s)")),
+        }
+    }
+    Ok(format!("{count} | | | | | | | | | {} |", reasons.join("; ")))
+}
+
+/// The paths that are tried, in this order: a hole turns first.
+fn paths(pair: &DomainPair, turn: Option<f64>) -> Result<Vec<(&'static str, Box<dyn ShapePath>)>, String> {
+    let text = |error: homeo::shape::ShapeError| error.to_string();
+    let straight: Box<dyn ShapePath> = Box::new(LinearPath::between(pair).map_err(text)?);
+    let outer = TurningPath::between(pair, &[]).map_err(text)?.turns_in_degrees()[0];
+    let turning = TurningPath::between(pair, &[outer, outer + turn.unwrap_or(0.0)]).map_err(text)?;
+    let turning: Box<dyn ShapePath> = Box::new(turning);
+    let [source, target] = [&pair.source, &pair.target].map(|domain| domain.rings()[0].clone());
+    Ok(match pair.source.rings().len() {
+        1 => {
+            let angles = LengthsAndAngles::new(source, target).map(|path| Box::new(path) as Box<dyn ShapePath>);
+            let angles = angles.into_iter().map(|path| ("angles", path));
+            angles.chain([("straight", straight), ("turning", turning)]).collect()
+        }
+        _ => vec![("turning", turning), ("straight", straight)],
+    })
+}
+
+/// What the checker says: boxes, seconds, verdict.
+fn checked(map: &CompositeMap) -> Result<String, String> {
+    let mut bytes = Cursor::new(Vec::new());
+    write_composite(map, &Provenance::default(), &mut bytes).map_err(|error| error.to_string())?;
     let start = Instant::now();
-    let built = CompositeMap::build(&LinearPath::new(pair), params, &Silent);
+    let verdict = verify_bytes(bytes.get_ref()).map_err(|error| error.to_string())?;
     let seconds = start.elapsed().as_secs_f64();
-    Ok(match built {
-        Ok((map, info)) => format!(
-            "{count} | {} | {:.3e} | {} | {} | {seconds:.1} | |",
-            map.step_count(),
-            info.least_determinant,
-            info.boxes,
-            info.boxes_in_vain
-        ),
-        Err(error) => format!("{count} | | | | | {seconds:.1} | {error} |"),
+    Ok(match verdict {
+        Verdict::Certified(claim) => {
+            let boxes = claim.checked.last().map_or(0, |(_, count)| *count);
+            format!("{boxes} | {seconds:.1} | certified")
+        }
+        Verdict::Refuted(witness) => format!("| {seconds:.1} | refuted: {}", witness.message),
+        Verdict::Undecided(obstacle) => format!("| {seconds:.1} | undecided: {}", obstacle.message),
     })
 }

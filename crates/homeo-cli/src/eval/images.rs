@@ -2,10 +2,9 @@
 
 use std::fmt;
 
-use homeo::certificate::{FoliationMap, StoredMap};
+use homeo::certificate::{FoliationMap, PlanarMap, StoredMap};
 use homeo::map::{
-    Bijection, Enclosed, Enclosed2, EvaluationError, HarmonicMap, PlanarBijection, PlanarEvaluationError, Shell,
-    ShellEvaluationError,
+    Bijection, Enclosed, Enclosed2, EvaluationError, HarmonicMap, PlanarEvaluationError, Shell, ShellEvaluationError,
 };
 use homeo_core::number::Rational;
 use rayon::prelude::*;
@@ -24,6 +23,8 @@ pub enum NoImage {
     Map(EvaluationError),
     Shell(ShellEvaluationError),
     Planar(PlanarEvaluationError),
+    /// It has one that is no rational number.
+    NotRational,
 }
 
 impl NoImage {
@@ -39,6 +40,7 @@ impl fmt::Display for NoImage {
             Self::Map(error) => error.fmt(formatter),
             Self::Shell(error) => error.fmt(formatter),
             Self::Planar(error) => error.fmt(formatter),
+            Self::NotRational => formatter.write_str("the image is not rational"),
         }
     }
 }
@@ -63,7 +65,8 @@ pub fn floating(map: &StoredMap, direction: Direction, points: &[[f64; 3]]) -> V
             };
             points.par_iter().map(|point| one(point).map_err(NoImage::Shell)).collect()
         }
-        StoredMap::Harmonic(map) => {
+        StoredMap::Planar(map) => {
+            let map = map.as_bijection();
             let one = |&[x, y, _]: &[f64; 3]| match direction {
                 Direction::Forward => map.forward([x, y]),
                 Direction::Inverse => map.inverse([x, y]),
@@ -79,7 +82,8 @@ pub fn exact(map: &StoredMap, direction: Direction, points: &[[Rational; 3]]) ->
     let one = |point: &[Rational; 3]| match map {
         StoredMap::Foliation(map) => exact_in_map(map, direction, point).map_err(NoImage::Map),
         StoredMap::Shell(shell) => exact_in_shell(shell, direction, point).map_err(NoImage::Shell),
-        StoredMap::Harmonic(map) => exact_in_plane(map, direction, point).map_err(NoImage::Planar),
+        StoredMap::Planar(PlanarMap::Harmonic(map)) => exact_in_plane(map, direction, point).map_err(NoImage::Planar),
+        StoredMap::Planar(PlanarMap::Composite(_)) => Err(NoImage::NotRational),
     };
     points.par_iter().map(one).collect()
 }

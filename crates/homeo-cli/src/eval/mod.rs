@@ -2,7 +2,7 @@
 
 mod images;
 
-use homeo::certificate::{FoliationMap, StoredMap};
+use homeo::certificate::{FoliationMap, PlanarMap, StoredMap};
 use homeo::map::Bijection;
 use homeo::progress::Progress;
 use homeo_core::number::Rational;
@@ -110,6 +110,11 @@ fn floating(session: &Session, options: &EvalArgs, map: &StoredMap, format: Poin
 }
 
 fn exact(session: &Session, options: &EvalArgs, map: &StoredMap) -> Result<Done> {
+    if let StoredMap::Planar(PlanarMap::Composite(_)) = map {
+        let message = "composite mean value maps take rational points to others that are not: leave out --exact for \
+                       images with a bound of their error";
+        return Err(Failure::input("no-exact-images", message));
+    }
     let bytes = points::bytes_of(&options.points)?;
     let points = csv::parse(&bytes, csv::rational)
         .map_err(|what| Failure::input("points", format!("{}: {what}", options.points.display())))?;
@@ -147,9 +152,9 @@ fn check_columns(
     let (name, dimension, flat_source) = match map {
         StoredMap::Foliation(map) => (map.target().name(), map.target().dimension(), is_flat(map)),
         StoredMap::Shell(_) => ("shell", 3, false),
-        StoredMap::Harmonic(_) => ("polygon", 2, true),
+        StoredMap::Planar(_) => ("polygon", 2, true),
     };
-    if dimension == 2 && (options.inverse || matches!(map, StoredMap::Harmonic(_))) {
+    if dimension == 2 && (options.inverse || matches!(map, StoredMap::Planar(_))) {
         return match (0..rows).find(|&row| !is_planar(row)) {
             Some(row) => {
                 Err(wrong(format!("row {}: the third coordinate of a point of the {name} must be 0", row + 1)))
@@ -176,7 +181,7 @@ fn is_flat(map: &FoliationMap) -> bool {
 fn output_columns(options: &EvalArgs, map: &StoredMap) -> usize {
     match map {
         StoredMap::Foliation(map) if !options.inverse => map.target().dimension(),
-        StoredMap::Harmonic(_) => 2,
+        StoredMap::Planar(_) => 2,
         _ => 3,
     }
 }

@@ -1,10 +1,17 @@
 //! The polygons in between.
 
-use homeo::shape::{LengthsAndAngles, LinearPath, ShapePath};
+use homeo::shape::ShapePath;
 use homeo_core::planar::{DomainPair, PlanarDomain};
 
-use crate::args::{MorphArgs, PathName};
+use crate::args::MorphArgs;
 use crate::failure::{Failure, Result};
+use crate::warp::path::ways;
+
+/// A polygon on the way, and by how many degrees its hole has turned, if the way says so.
+pub struct Frame {
+    pub shape: PlanarDomain,
+    pub turn: Option<f64>,
+}
 
 /// When a frame is, from 0 to 1.
 fn time(frame: usize, frames: usize) -> f64 {
@@ -12,32 +19,23 @@ fn time(frame: usize, frames: usize) -> f64 {
 }
 
 /// Which path was taken, and the polygon of every frame, each of which bounds a domain.
-pub fn shapes(pair: &DomainPair, options: &MorphArgs) -> Result<(&'static str, Vec<PlanarDomain>)> {
-    let (source, target) = (pair.source.rings(), pair.target.rings());
-    let straight = || {
-        let path = LinearPath::new(source.to_vec(), target.to_vec()).map_err(|e| e.to_string());
-        ("straight", path.and_then(|path| frames(&path, options.frames as usize)))
-    };
-    let angles = || {
-        if source.len() > 1 {
-            return ("angles", Err("it is for polygons without holes".to_owned()));
-        }
-        let path = LengthsAndAngles::new(source[0].clone(), target[0].clone()).map_err(|e| e.to_string());
-        ("angles", path.and_then(|path| frames(&path, options.frames as usize)))
-    };
-    let tries = match options.path {
-        PathName::Straight => vec![straight()],
-        PathName::Angles => vec![angles()],
-        PathName::Auto => {
-            let first = angles();
-            if first.1.is_ok() { vec![first] } else { vec![first, straight()] }
-        }
-    };
+pub fn frames(pair: &DomainPair, options: &MorphArgs, turn: Option<f64>) -> Result<(&'static str, Vec<Frame>)> {
+    let count = options.frames as usize;
     let mut reasons = Vec::new();
-    for (name, found) in tries {
+    for way in ways(pair, options.polygons.path, turn) {
+        let found = way.and_then(|way| {
+            // On other ways a hole turns by less than a half turn.
+            if way.turn.is_none() && turn.is_some_and(|turn| turn.abs() > 180.0) {
+                return Err(format!("{}: the hole does not turn so far on this way", way.name));
+            }
+            let shapes = shapes(&*way.path, count).map_err(|error| format!("{}: {error}", way.name))?;
+            let turn = |frame: usize| way.turn.map(|turn| turn * time(frame, count));
+            let frames = shapes.into_iter().enumerate().map(|(k, shape)| Frame { shape, turn: turn(k) });
+            Ok((way.name, frames.collect()))
+        });
         match found {
-            Ok(shapes) => return Ok((name, shapes)),
-            Err(reason) => reasons.push(format!("{name}: {reason}")),
+            Ok(found) => return Ok(found),
+            Err(reason) => reasons.push(reason),
         }
     }
     let message = format!(
@@ -47,7 +45,7 @@ pub fn shapes(pair: &DomainPair, options: &MorphArgs) -> Result<(&'static str, V
     Err(Failure::limits("no-path", message))
 }
 
-fn frames(path: &dyn ShapePath, count: usize) -> std::result::Result<Vec<PlanarDomain>, String> {
+fn shapes(path: &dyn ShapePath, count: usize) -> std::result::Result<Vec<PlanarDomain>, String> {
     (0..count)
         .map(|frame| {
             let time = time(frame, count);

@@ -48,25 +48,19 @@ pub fn run(session: &Session, options: &MorphArgs, outputs: &mut Outputs) -> Res
     let (pair, turn) = polygons::read(&options.polygons)?;
     let first = polygons::paths(&options.polygons).first().copied().unwrap_or(&options.input);
     session.fact("input", proof::domain_json(&pair.source, first));
-    if let Some(turn) = turn.filter(|turn| turn.abs() > HALF_TURN) {
-        let message = format!(
-            "a hole that turns by {turn} degrees on the way is not possible yet: on straight paths it turns by less than \
-             a half turn; nothing was written. `homeo warp` makes the map"
-        );
-        return Err(Failure::limits("no-path", message));
-    }
     let picture = picture::read(&options.input)?;
     session.stage("path");
-    let (path, shapes) = between::shapes(&pair, options)?;
-    let place = placement(&options.polygons, &shapes.iter().collect::<Vec<_>>(), picture.size());
+    let (path, frames) = between::frames(&pair, options, turn)?;
+    let shapes: Vec<&PlanarDomain> = frames.iter().map(|frame| &frame.shape).collect();
+    let place = placement(&options.polygons, &shapes, picture.size());
     let (mut claim, mut pictures) = (None, Vec::new());
-    for (frame, shape) in shapes.iter().enumerate() {
+    for (number, frame) in frames.iter().enumerate() {
         session.check()?;
-        let step = Step { shape, place: &place };
+        let step = Step { frame, place: &place };
         let (moved, proved) = step.make(session, options, &pair, &picture, outputs)?;
         claim = Some(proved);
         match kind {
-            Kind::Separate => moved.stage(session, &numbered(&options.output, frame, shapes.len()), outputs)?,
+            Kind::Separate => moved.stage(session, &numbered(&options.output, number, shapes.len()), outputs)?,
             _ => pictures.push(moved.into_image(ImageFormat::Png)?),
         }
     }
@@ -107,7 +101,7 @@ fn check_output(options: &MorphArgs) -> Result<Kind> {
 }
 
 /// The polygons of all frames, ring by ring.
-fn polygons_in_between(shapes: &[PlanarDomain]) -> Result<Vec<u8>> {
+fn polygons_in_between(shapes: &[&PlanarDomain]) -> Result<Vec<u8>> {
     let frames: Vec<_> = shapes.iter().map(|shape| json!(shape.rings())).collect();
     serde_json::to_vec(&json!({"frames": frames})).map_err(|e| Failure::bug(e.to_string()))
 }
@@ -120,12 +114,9 @@ fn numbered(path: &Path, frame: usize, count: usize) -> PathBuf {
     path.with_file_name(format!("{stem}_{frame:0digits$}.{extension}"))
 }
 
-/// In degrees.
-const HALF_TURN: f64 = 180.0;
-
 /// What a frame is made of.
 struct Step<'a> {
-    shape: &'a PlanarDomain,
+    frame: &'a between::Frame,
     place: &'a Placement,
 }
 
@@ -138,8 +129,8 @@ impl Step<'_> {
         picture: &Picture,
         outputs: &mut Outputs,
     ) -> Result<(Picture, Claim)> {
-        let pair = DomainPair { source: pair.source.clone(), target: self.shape.clone() };
-        let map = harmonic_map(&pair, params(&options.polygons, None), session);
+        let pair = DomainPair { source: pair.source.clone(), target: self.frame.shape.clone() };
+        let map = harmonic_map(&pair, params(&options.polygons, self.frame.turn), session);
         let map = map.map_err(|error| explain(session, &error))?;
         let provenance = Provenance { source_name: file_name(&options.input), ..Provenance::default() };
         let claim =

@@ -1,14 +1,16 @@
 //! `homeo warp`: pictures and points move with a polygon, one-to-one.
 
+mod composite;
 mod landmarks;
+pub mod path;
 pub mod picture;
 pub mod polygons;
 
 use std::path::Path;
 
-use homeo::certificate::{Provenance, write_harmonic};
+use homeo::certificate::{PlanarMap, Provenance, write_planar};
 use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
-use homeo::map::{HarmonicMap, PlanarBijection};
+use homeo::map::PlanarBijection;
 use homeo::progress::Progress;
 use homeo::warp::{Filter, Placement, backward_field};
 use homeo_core::planar::PlanarDomain;
@@ -16,7 +18,7 @@ use homeo_verify::Claim;
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
-use crate::args::{Coordinates, FilterName, MiddleName, PolygonArgs, WarpArgs};
+use crate::args::{Coordinates, FilterName, MethodName, MiddleName, PolygonArgs, WarpArgs};
 use crate::failure::{Failure, Result};
 use crate::outputs::{Outputs, check_target};
 use crate::points::{self, PointFormat, Table, csv, npy};
@@ -33,26 +35,74 @@ pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Resu
     let input = Input::read(&options.input)?;
     let first = options.landmarks.as_deref().or_else(|| polygons::paths(&options.polygons).first().copied());
     let first = first.unwrap_or(&options.input);
-    let (map, turn) = match &options.landmarks {
-        Some(path) => (landmarks::map(path)?, None),
-        None => polygon_map(session, &options.polygons)?,
-    };
+    let made = make(session, options)?;
+    let map = made.map.as_bijection();
     session.fact("input", proof::domain_json(map.source(), first));
-    let provenance = provenance(options, first, turn);
+    let provenance = Provenance {
+        source_name: file_name(first),
+        program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
+        options: made.options.clone(),
+    };
     let claim = proof::write_and_check(session, options.map.as_deref(), outputs, |mut out| {
-        write_harmonic(&map, &provenance, &mut out)
+        write_planar(&made.map, &provenance, &mut out)
     })?;
     session.stage("warp");
-    let done = input.warp(session, options, &map, outputs)?;
+    let done = input.warp(session, options, map, outputs)?;
     session.end_stage();
-    Ok(answer(session, options, &map, &claim, done))
+    Ok(answer(session, options, &made, &claim, done))
 }
 
-/// The map between polygons, and the turn that was asked for.
-fn polygon_map(session: &Session, options: &PolygonArgs) -> Result<(HarmonicMap, Option<f64>)> {
-    let (pair, turn) = polygons::read(options)?;
-    let map = harmonic_map(&pair, params(options, turn), session).map_err(|error| explain(session, &error))?;
-    Ok((map, turn))
+/// A map and what is said of it.
+struct Made {
+    map: PlanarMap,
+    /// With which options it was made.
+    options: Value,
+    quality: Value,
+    words: [(&'static str, String); 1],
+}
+
+fn make(session: &Session, options: &WarpArgs) -> Result<Made> {
+    if let Some(path) = &options.landmarks {
+        return Ok(piecewise_linear(landmarks::map(path)?.into(), json!({"landmarks": file_name(path)})));
+    }
+    let (pair, turn) = polygons::read(&options.polygons)?;
+    if options.method == MethodName::MeanValue {
+        let (map, made) = composite::map(session, &pair, &options.polygons, turn)?;
+        let composite::Made { path, info } = made;
+        return Ok(Made {
+            words: [(
+                "steps",
+                format!(
+                    "{} on the path `{path}`, determinant at least {:.2e}",
+                    map.step_count(),
+                    info.least_determinant
+                ),
+            )],
+            quality: json!({"steps": map.step_count(), "least_determinant": info.least_determinant}),
+            options: json!({"method": "mean-value", "path": path, "turn_degrees": turn, "times": info.times}),
+            map: map.into(),
+        });
+    }
+    let map =
+        harmonic_map(&pair, params(&options.polygons, turn), session).map_err(|error| explain(session, &error))?;
+    let middle = if options.polygons.middle == MiddleName::Regular { "regular" } else { "lengths" };
+    let made = json!({
+        "method": "harmonic", "triangles": options.polygons.triangles, "turn_degrees": turn, "middle": middle,
+    });
+    Ok(piecewise_linear(map.into(), made))
+}
+
+fn piecewise_linear(map: PlanarMap, options: Value) -> Made {
+    let triangles = match &map {
+        PlanarMap::Harmonic(map) => [map.source_half(), map.target_half()].map(|half| half.parts().triangles.len()),
+        PlanarMap::Composite(_) => [0; 2],
+    };
+    Made {
+        map,
+        options,
+        quality: json!({"triangles": {"source": triangles[0], "target": triangles[1]}}),
+        words: [("triangles", format!("{} on the source, {} on the target", triangles[0], triangles[1]))],
+    }
 }
 
 /// What is moved.
@@ -115,17 +165,6 @@ pub fn explain(session: &Session, error: &HarmonicError) -> Failure {
     }
 }
 
-fn provenance(options: &WarpArgs, source: &Path, turn: Option<f64>) -> Provenance {
-    Provenance {
-        source_name: file_name(source),
-        program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
-        options: json!({
-            "triangles": options.polygons.triangles, "turn_degrees": turn,
-            "middle": if options.polygons.middle == MiddleName::Regular { "regular" } else { "lengths" },
-        }),
-    }
-}
-
 /// What was moved.
 struct Done {
     fields: Value,
@@ -148,7 +187,13 @@ impl Input {
         }
     }
 
-    fn warp(self, session: &Session, options: &WarpArgs, map: &HarmonicMap, outputs: &mut Outputs) -> Result<Done> {
+    fn warp(
+        self,
+        session: &Session,
+        options: &WarpArgs,
+        map: &dyn PlanarBijection,
+        outputs: &mut Outputs,
+    ) -> Result<Done> {
         match self {
             Self::Picture(picture) => warp_picture(session, options, map, picture, outputs),
             Self::Points(points) => warp_points(session, options, map, points, outputs),
@@ -159,7 +204,7 @@ impl Input {
 fn warp_picture(
     session: &Session,
     options: &WarpArgs,
-    map: &HarmonicMap,
+    map: &dyn PlanarBijection,
     picture: Picture,
     outputs: &mut Outputs,
 ) -> Result<Done> {
@@ -193,7 +238,7 @@ pub fn placement(options: &PolygonArgs, domains: &[&PlanarDomain], [width, heigh
 fn warp_points(
     session: &Session,
     options: &WarpArgs,
-    map: &HarmonicMap,
+    map: &dyn PlanarBijection,
     points: Table<f64>,
     outputs: &mut Outputs,
 ) -> Result<Done> {
@@ -225,21 +270,22 @@ fn warp_points(
     Ok(Done { fields, words: format!("{count} points, error at most {radius:.1e}"), outside })
 }
 
-fn answer(session: &Session, options: &WarpArgs, map: &HarmonicMap, claim: &Claim, done: Done) -> Answer {
-    let triangles = [map.source_half(), map.target_half()].map(|half| half.parts().triangles.len());
+fn answer(session: &Session, options: &WarpArgs, made: &Made, claim: &Claim, done: Done) -> Answer {
     let mut lines = Lines::default();
     lines.add("certificate", proof::holds(claim));
-    lines.add("triangles", format!("{} on the source, {} on the target", triangles[0], triangles[1]));
+    made.words.iter().for_each(|(name, words)| lines.add(name, words));
     lines.add("moved", &done.words);
     lines.add("time", stages(&session.seconds()));
     let shown = |path: &Option<std::path::PathBuf>| path.as_ref().map(|path| path.display().to_string());
     for path in [&options.output, &options.map, &options.field].into_iter().flatten() {
         lines.add("written", path.display());
     }
+    let mut quality = made.quality.clone();
+    quality["moved"] = done.fields;
     let fields = json!({
-        "target": if map.middle().is_cylinder() { "annulus" } else { "polygon" },
+        "target": claim.target,
         "certificate": proof::claim_json(claim),
-        "quality": {"triangles": {"source": triangles[0], "target": triangles[1]}, "moved": done.fields},
+        "quality": quality,
         "outside": done.outside,
         "output": shown(&options.output), "map": shown(&options.map), "field": shown(&options.field),
     });

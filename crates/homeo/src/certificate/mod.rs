@@ -8,11 +8,12 @@ mod read;
 mod write;
 
 pub use read::{MapFileError, read_map};
-pub use write::{content_sha256, write_harmonic, write_map, write_shell};
+pub use write::{content_sha256, write_composite, write_harmonic, write_map, write_planar, write_shell};
 
 use homeo_core::number::Rational;
 
-use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, HarmonicMap, Shell, Target};
+use crate::composite::CompositeMap;
+use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, HarmonicMap, PlanarBijection, Shell, Target};
 
 /// What a map file holds.
 #[derive(Debug)]
@@ -22,8 +23,39 @@ pub enum StoredMap {
     Foliation(FoliationMap),
     /// A shell with its projection.
     Shell(Shell),
-    /// A composite harmonic map between planar domains.
+    /// A map between planar domains.
+    Planar(PlanarMap),
+}
+
+/// A map between planar domains.
+#[derive(Debug)]
+pub enum PlanarMap {
+    /// A composite harmonic map, or one by landmarks: piecewise linear.
     Harmonic(HarmonicMap),
+    /// A composite mean value map: smooth inside.
+    Composite(CompositeMap),
+}
+
+impl PlanarMap {
+    /// The map, to be evaluated.
+    pub fn as_bijection(&self) -> &dyn PlanarBijection {
+        match self {
+            Self::Harmonic(map) => map,
+            Self::Composite(map) => map,
+        }
+    }
+}
+
+impl From<HarmonicMap> for PlanarMap {
+    fn from(map: HarmonicMap) -> Self {
+        Self::Harmonic(map)
+    }
+}
+
+impl From<CompositeMap> for PlanarMap {
+    fn from(map: CompositeMap) -> Self {
+        Self::Composite(map)
+    }
 }
 
 /// A foliation map of a surface or of a volume.

@@ -12,6 +12,7 @@ use zip::{CompressionMethod, ZipArchive};
 
 use super::npy::decode;
 use super::{FoliationMap, StoredMap};
+use crate::composite::{CompositeMap, Tiling};
 use crate::input::SourceMesh;
 use crate::map::{
     BoundaryPoint, Centre, Foliation, FoliationParts, HalfParts, HarmonicMap, Middle, SHARE_BITS, Section, Shell,
@@ -82,7 +83,11 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
         }
         "composite-harmonic" => {
             is_of_dimension(&text("target"), 2)?;
-            Ok(StoredMap::Harmonic(file.harmonic(text("target") == "annulus")?))
+            Ok(StoredMap::Planar(file.harmonic(text("target") == "annulus")?.into()))
+        }
+        "composite-mean-value" => {
+            is_of_dimension(&text("target"), 2)?;
+            Ok(StoredMap::Planar(file.composite()?.into()))
         }
         other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
     }
@@ -90,6 +95,12 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
 
 struct File<'b> {
     zip: ZipArchive<Cursor<&'b [u8]>>,
+}
+
+/// Rows cut into parts of these sizes, which add up to no more than there are.
+fn cut<T: Clone>(rows: &[T], sizes: &[u32]) -> Vec<Vec<T>> {
+    let mut rest = rows;
+    sizes.iter().map(|&n| rest.split_off(..n as usize).unwrap_or_default().to_vec()).collect()
 }
 
 fn inconsistent<T>(what: impl Into<String>) -> Result<T, MapFileError> {
@@ -187,13 +198,41 @@ impl<'b> File<'b> {
         Ok(HarmonicMap::new(middle, source?, target?))
     }
 
+    fn composite(&mut self) -> Result<CompositeMap, MapFileError> {
+        let sizes = self.array::<u32>("source_rings", 1)?;
+        let source = self.rings("source_points", &sizes)?;
+        let count: usize = sizes.iter().map(|&n| n as usize).sum();
+        let stages = self.points_2d("stage_points")?;
+        if !stages.len().is_multiple_of(count.max(1)) {
+            return inconsistent("stage_points does not have as many points for each domain as the source");
+        }
+        let later = stages.chunks_exact(count.max(1)).map(|points| cut(points, &sizes));
+        let domains = std::iter::once(source).chain(later).enumerate().map(|(number, rings)| {
+            PlanarDomain::new(rings).map_err(|e| MapFileError::Inconsistent(format!("domain {number}: {e}")))
+        });
+        let domains = domains.collect::<Result<Vec<_>, _>>()?;
+        let (added, triangles) = (self.points_2d("added_points")?, self.rows::<u32, 3>("triangles")?);
+        let added = self.parts(&added, "added_counts")?;
+        let triangles = self.parts(&triangles, "triangle_counts")?;
+        let tilings = added.into_iter().zip(triangles).map(|(added, triangles)| Tiling { added, triangles });
+        CompositeMap::from_domains(domains, tilings.collect()).map_err(|e| MapFileError::Inconsistent(e.to_string()))
+    }
+
+    /// Rows cut into parts of as many as an array says.
+    fn parts<T: Clone>(&mut self, rows: &[T], counts: &str) -> Result<Vec<Vec<T>>, MapFileError> {
+        let sizes = self.array::<u32>(counts, 1)?;
+        if sizes.iter().map(|&n| u64::from(n)).sum::<u64>() != rows.len() as u64 {
+            return inconsistent(format!("{counts} do not add up to the number of rows"));
+        }
+        Ok(cut(rows, &sizes))
+    }
+
     fn rings(&mut self, name: &str, sizes: &[u32]) -> Result<Vec<Vec<Point2>>, MapFileError> {
         let points = self.points_2d(name)?;
         if sizes.iter().map(|&n| u64::from(n)).sum::<u64>() != points.len() as u64 || sizes.iter().any(|&n| n < 3) {
             return inconsistent(format!("the rows of {name} are not those of rings of three vertices or more"));
         }
-        let mut rest = &points[..];
-        Ok(sizes.iter().map(|&n| rest.split_off(..n as usize).unwrap_or_default().to_vec()).collect())
+        Ok(cut(&points, sizes))
     }
 
     fn points_2d(&mut self, name: &str) -> Result<Vec<Point2>, MapFileError> {

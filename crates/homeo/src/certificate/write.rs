@@ -10,9 +10,10 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::npy::{Element, encode};
-use super::{FoliationMap, Provenance, either};
+use super::{FoliationMap, PlanarMap, Provenance, either};
+use crate::composite::CompositeMap;
 use crate::input::SourceMesh;
-use crate::map::{Bijection, Centre, Foliation, HarmonicMap, Section, Shell};
+use crate::map::{Bijection, Centre, Foliation, HarmonicMap, PlanarBijection, Section, Shell};
 
 /// Writes a map with its certificate. The same map gives the same bytes.
 ///
@@ -52,18 +53,45 @@ pub fn write_shell(shell: &Shell, provenance: &Provenance, out: &mut (impl Write
     archive.finish()
 }
 
+/// Writes a map between planar domains with what its certificate needs. The same map gives the same bytes.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub fn write_planar(map: &PlanarMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
+    match map {
+        PlanarMap::Harmonic(map) => write_harmonic(map, provenance, out),
+        PlanarMap::Composite(map) => write_composite(map, provenance, out),
+    }
+}
+
+/// Writes a composite mean value map with what its certificate needs. The same map gives the same bytes.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub fn write_composite(map: &CompositeMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
+    let target = match map.source().rings().len() {
+        1 => "polygon",
+        2 => "annulus",
+        _ => "domain",
+    };
+    let mut archive = Archive::begin_planar(map.source(), ["composite-mean-value", target], provenance, out)?;
+    archive.points("stage_points", &map.domains()[1..].iter().flat_map(|d| d.vertices()).collect::<Vec<_>>())?;
+    let tilings = map.tilings();
+    archive.array("added_counts", &[tilings.len()], tilings.iter().map(|tiling| tiling.added.len() as u32))?;
+    archive.points("added_points", &tilings.iter().flat_map(|t| t.added.iter().copied()).collect::<Vec<_>>())?;
+    archive.array("triangle_counts", &[tilings.len()], tilings.iter().map(|tiling| tiling.triangles.len() as u32))?;
+    let triangles: Vec<u32> = tilings.iter().flat_map(|t| t.triangles.as_flattened()).copied().collect();
+    archive.array("triangles", &[triangles.len() / 3, 3], triangles.into_iter())?;
+    archive.finish()
+}
+
 /// Writes a composite harmonic map with what its certificate needs. The same map gives the same bytes.
 ///
 /// # Errors
 /// When `out` cannot be written.
 pub fn write_harmonic(map: &HarmonicMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
-    let mut archive = Archive { zip: ZipWriter::new(out) };
-    let manifest = serde_json::to_vec_pretty(&planar_manifest(map, provenance)).map_err(io::Error::other)?;
-    archive.add("manifest.json", &manifest)?;
-    let source = &map.source_half().parts().domain;
-    let sizes = source.rings().iter().map(|ring| ring.len() as u32);
-    archive.points("source_points", &source.vertices().collect::<Vec<_>>())?;
-    archive.array("source_rings", &[source.rings().len()], sizes)?;
+    let target = if map.middle().is_cylinder() { "annulus" } else { "polygon" };
+    let mut archive = Archive::begin_planar(map.source(), ["composite-harmonic", target], provenance, out)?;
     archive.points("target_points", &map.target_half().parts().domain.vertices().collect::<Vec<_>>())?;
     archive.points("middle_points", &map.middle().rings().concat())?;
     for (name, half) in [("source", map.source_half()), ("target", map.target_half())] {
@@ -80,25 +108,6 @@ pub fn write_harmonic(map: &HarmonicMap, provenance: &Provenance, out: &mut (imp
         }
     }
     archive.finish()
-}
-
-fn planar_manifest(map: &HarmonicMap, provenance: &Provenance) -> serde_json::Value {
-    let source = &map.source_half().parts().domain;
-    json!({
-        "format": "homeo",
-        "version": 1,
-        "kind": "composite-harmonic",
-        "dimension": 2,
-        "target": if map.middle().is_cylinder() { "annulus" } else { "polygon" },
-        "centre": null,
-        "source": {
-            "name": provenance.source_name,
-            "vertices": source.vertex_count(),
-            "cells": source.rings().len(),
-            "content_sha256": domain_sha256(source),
-        },
-        "construction": {"program": provenance.program, "options": provenance.options},
-    })
 }
 
 /// SHA-256 of the arrays of a planar source as the map file stores them, in hexadecimal digits.
@@ -156,6 +165,36 @@ impl<'w, W: Write + Seek> Archive<'w, W> {
         let manifest = serde_json::to_vec_pretty(&manifest(source, claim, provenance)).map_err(io::Error::other)?;
         archive.add("manifest.json", &manifest)?;
         archive.mesh(["source_positions", "source_cells"], source)?;
+        Ok(archive)
+    }
+
+    /// Begins the file of a map of this kind and target between planar domains: manifest and source.
+    fn begin_planar(
+        source: &PlanarDomain,
+        [kind, target]: [&str; 2],
+        provenance: &Provenance,
+        out: &'w mut W,
+    ) -> io::Result<Self> {
+        let mut archive = Self { zip: ZipWriter::new(out) };
+        let manifest = json!({
+            "format": "homeo",
+            "version": 1,
+            "kind": kind,
+            "dimension": 2,
+            "target": target,
+            "centre": null,
+            "source": {
+                "name": provenance.source_name,
+                "vertices": source.vertex_count(),
+                "cells": source.rings().len(),
+                "content_sha256": domain_sha256(source),
+            },
+            "construction": {"program": provenance.program, "options": provenance.options},
+        });
+        archive.add("manifest.json", &serde_json::to_vec_pretty(&manifest).map_err(io::Error::other)?)?;
+        archive.points("source_points", &source.vertices().collect::<Vec<_>>())?;
+        let sizes = source.rings().iter().map(|ring| ring.len() as u32);
+        archive.array("source_rings", &[source.rings().len()], sizes)?;
         Ok(archive)
     }
 

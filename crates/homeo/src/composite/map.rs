@@ -8,12 +8,12 @@ use super::chart::Step;
 use super::evaluate::{BallPoint, Jacobian};
 use super::invert::{InverseError, invert};
 use super::number::{Ball, Number};
-use super::partition::{
-    Partition, PartitionError, PartitionParams, Stage, VertexPath, binary_partition, given_partition,
-};
-use super::triangulation::Tiling;
+use super::partition::{Partition, PartitionError, PartitionParams, Stage, binary_partition, given_partition};
+use super::track::{self, Track};
+use super::triangulation::{Tiling, TriangulationError, check_tiling, triangulate};
 use crate::map::{Enclosed2, PlanarBijection, PlanarEvaluationError};
 use crate::progress::Progress;
+use crate::shape::ShapePath;
 
 /// Why a point has no image.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -33,9 +33,13 @@ pub enum CompositeError {
 }
 
 /// How a composite map came about.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CompositeInfo {
-    /// The least determinant that is proved for a step; every step has its own in [`CompositeMap::bounds`].
+    /// The times of all domains on the path.
+    pub times: Vec<f64>,
+    /// For each step a number that its Jacobian determinant is proved to be no less than.
+    pub bounds: Vec<f64>,
+    /// The least of them.
     pub least_determinant: f64,
     /// Boxes that the proof evaluated.
     pub boxes: u64,
@@ -48,16 +52,18 @@ pub struct CompositeInfo {
 /// A homeomorphism between planar domains, analytic inside: mean value maps from each domain of a list to the next.
 ///
 /// # Guarantee
-/// The numbers stored define the map: the vertices of all domains. Every step has a Jacobian determinant proved to be
-/// at least its [bound](Self::bounds), so that it is a homeomorphism of the closed domains, linear on every edge.
+/// The numbers stored define the map: the vertices of all domains. [`build`](Self::build) proves that the Jacobian determinant
+/// of every step is positive, so that it is a homeomorphism of the closed domains, linear on every edge. A map that was
+/// put together by [`from_domains`](Self::from_domains), or read from a file, is as good as its certificate.
 ///
 /// ```
-/// use homeo::composite::{CompositeMap, LinearPath, PartitionParams};
+/// use homeo::composite::{CompositeMap, PartitionParams};
 /// use homeo::progress::Silent;
+/// use homeo::shape::LinearPath;
 /// use homeo_core::planar::DomainPair;
 /// let square = vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]];
 /// let kite = vec![vec![[0.0, 0.0], [1.0, 0.0], [0.4, 0.4], [0.0, 1.0]]];
-/// let path = LinearPath::new(DomainPair::new(square, kite).unwrap());
+/// let path = LinearPath::between(&DomainPair::new(square, kite).unwrap()).unwrap();
 /// let (map, info) = CompositeMap::build(&path, &PartitionParams::default(), &Silent).unwrap();
 /// assert!(map.step_count() > 1 && info.least_determinant > 0.0);
 /// let image = map.forward([0.7, 0.6]).unwrap();
@@ -66,11 +72,37 @@ pub struct CompositeInfo {
 /// ```
 #[derive(Clone, Debug)]
 pub struct CompositeMap {
-    stages: Vec<Stage>,
-    bounds: Vec<f64>,
+    domains: Vec<PlanarDomain>,
+    tilings: Vec<Tiling>,
     steps: Vec<Step>,
-    /// From each stage to the one before: near the inverse, to begin the search for it with.
+    /// From each domain to the one before: near the inverse, to begin the search for it with.
     backward: Vec<Step>,
+}
+
+/// Why domains and triangles make no composite map.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CompositePartsError {
+    /// Two domains are needed, and triangles for each but the last.
+    #[error(
+        "{domains} domains and {tilings} tilings were given; a map has two domains or more, and a tiling for each but the last"
+    )]
+    Counts {
+        /// How many domains there are.
+        domains: usize,
+        /// How many tilings.
+        tilings: usize,
+    },
+    /// The rings of a domain do not correspond to those of the first.
+    #[error("domain {0} has rings of other numbers of vertices than the first")]
+    OtherRings(usize),
+    /// Triangles do not tile their domain, or the last domain could not be cut into triangles.
+    #[error("domain {domain}: {error}")]
+    Tiling {
+        /// The domain.
+        domain: usize,
+        /// What is wrong.
+        error: TriangulationError,
+    },
 }
 
 impl CompositeMap {
@@ -79,7 +111,7 @@ impl CompositeMap {
     /// # Errors
     /// At which time the vertices bound no domain, or which limit was reached where.
     pub fn build(
-        path: &dyn VertexPath,
+        path: &dyn ShapePath,
         params: &PartitionParams,
         progress: &(dyn Progress + Sync),
     ) -> Result<(Self, CompositeInfo), PartitionError> {
@@ -91,7 +123,7 @@ impl CompositeMap {
     /// # Errors
     /// As [`build`](Self::build), and the first step that is not proved.
     pub fn at_times(
-        path: &dyn VertexPath,
+        path: &dyn ShapePath,
         times: &[f64],
         params: &PartitionParams,
         progress: &(dyn Progress + Sync),
@@ -99,13 +131,45 @@ impl CompositeMap {
         Ok(Self::from_partition(given_partition(path, times, params, progress)?))
     }
 
+    /// The map by domains and tilings that are known already. That it is one-to-one is not proved here: a certificate of the map
+    /// says so, or [`bound_jacobian`](super::bound_jacobian) for each step.
+    ///
+    /// # Errors
+    /// What does not fit together.
+    pub fn from_domains(domains: Vec<PlanarDomain>, mut tilings: Vec<Tiling>) -> Result<Self, CompositePartsError> {
+        if domains.len() < 2 || tilings.len() + 1 != domains.len() {
+            return Err(CompositePartsError::Counts { domains: domains.len(), tilings: tilings.len() });
+        }
+        let sizes = |domain: &PlanarDomain| domain.rings().iter().map(Vec::len).collect::<Vec<_>>();
+        if let Some(number) = domains.iter().position(|domain| sizes(domain) != sizes(&domains[0])) {
+            return Err(CompositePartsError::OtherRings(number));
+        }
+        let wrong = |domain: usize| move |error: TriangulationError| CompositePartsError::Tiling { domain, error };
+        for (number, tiling) in tilings.iter().enumerate() {
+            check_tiling(&domains[number], tiling).map_err(wrong(number))?;
+        }
+        // Only the way back needs triangles of the target; no claim rests on them.
+        let last = domains.len() - 1;
+        tilings.push(triangulate(&domains[last]).map_err(wrong(last))?);
+        Ok(Self::new(domains, tilings))
+    }
+
     fn from_partition(partition: Partition) -> (Self, CompositeInfo) {
         let Partition { stages, bounds, boxes: [boxes, all], tried } = partition;
         let least_determinant = bounds.iter().copied().fold(f64::INFINITY, f64::min);
-        let info = CompositeInfo { least_determinant, boxes, boxes_in_vain: all - boxes, tried };
-        let steps = stages.windows(2).map(|pair| pair[0].step_to(&pair[1])).collect();
-        let backward = stages.windows(2).map(|pair| pair[1].step_to(&pair[0])).collect();
-        (Self { stages, bounds, steps, backward }, info)
+        let times = stages.iter().map(|stage| stage.time).collect();
+        let info = CompositeInfo { times, bounds, least_determinant, boxes, boxes_in_vain: all - boxes, tried };
+        let (domains, tilings) = stages.into_iter().map(|Stage { domain, tiling, .. }| (domain, tiling)).unzip();
+        (Self::new(domains, tilings), info)
+    }
+
+    /// Tilings of all domains, of the last one too.
+    fn new(domains: Vec<PlanarDomain>, mut tilings: Vec<Tiling>) -> Self {
+        let step = |from: usize, to: usize| Step::new(&domains[from], &tilings[from], domains[to].vertices().collect());
+        let steps = (1..domains.len()).map(|number| step(number - 1, number)).collect();
+        let backward = (1..domains.len()).map(|number| step(number, number - 1)).collect();
+        tilings.pop();
+        Self { domains, tilings, steps, backward }
     }
 
     /// How many steps it has.
@@ -114,23 +178,21 @@ impl CompositeMap {
     }
 
     /// All domains, from the source to the target.
-    pub fn domains(&self) -> impl Iterator<Item = &PlanarDomain> {
-        self.stages.iter().map(|stage| &stage.domain)
+    pub fn domains(&self) -> &[PlanarDomain] {
+        &self.domains
     }
 
-    /// The times of all domains on the path.
-    pub fn times(&self) -> impl Iterator<Item = f64> {
-        self.stages.iter().map(|stage| stage.time)
+    /// For each domain but the last the triangles that tile it, in which the proof is made.
+    pub fn tilings(&self) -> &[Tiling] {
+        &self.tilings
     }
 
-    /// For each domain the triangles that tile it, in which the proof was made.
-    pub fn tilings(&self) -> impl Iterator<Item = &Tiling> {
-        self.stages.iter().map(|stage| &stage.tiling)
+    pub(super) fn steps(&self) -> &[Step] {
+        &self.steps
     }
 
-    /// For each step a number that its Jacobian determinant is proved to be no less than.
-    pub fn bounds(&self) -> &[f64] {
-        &self.bounds
+    pub(super) fn backward(&self) -> &[Step] {
+        &self.backward
     }
 
     /// Image of a point of the source, with a bound of the error.
@@ -179,7 +241,7 @@ impl CompositeMap {
         }
         let mut here = Enclosed2 { point, radius: 0.0 };
         for number in (0..self.steps.len()).rev() {
-            let domains = [&self.stages[number].domain, &self.stages[number + 1].domain];
+            let domains = [&self.domains[number], &self.domains[number + 1]];
             here = invert(&self.steps[number], &self.backward[number], domains, here)
                 .map_err(|error| CompositeError::NotProved(number, error))?;
         }
@@ -213,11 +275,11 @@ impl CompositeMap {
 
 impl PlanarBijection for CompositeMap {
     fn source(&self) -> &PlanarDomain {
-        &self.stages[0].domain
+        &self.domains[0]
     }
 
     fn target(&self) -> &PlanarDomain {
-        &self.stages[self.steps.len()].domain
+        &self.domains[self.steps.len()]
     }
 
     fn forward(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
@@ -226,6 +288,20 @@ impl PlanarBijection for CompositeMap {
 
     fn inverse(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
         Ok(CompositeMap::inverse(self, point)?)
+    }
+
+    fn forward_along(&self, points: &[Point2], images: &mut [Option<Point2>]) {
+        for (image, &point) in images.iter_mut().zip(points) {
+            *image = track::image(self, point);
+        }
+    }
+
+    /// By Newton's method from the point before.
+    fn inverse_along(&self, points: &[Point2], preimages: &mut [Option<Point2>]) {
+        let mut track = Track::new(self);
+        for (preimage, &point) in preimages.iter_mut().zip(points) {
+            *preimage = track.preimage(point);
+        }
     }
 }
 

@@ -23,12 +23,13 @@ mod number;
 mod partition;
 #[cfg(test)]
 mod tests;
+mod track;
 mod triangulation;
 mod vector;
 
 pub use bound::{JacobianLimits, JacobianVerdict, bound_jacobian};
 pub use evaluate::Jacobian;
 pub use invert::InverseError;
-pub use map::{CompositeError, CompositeInfo, CompositeMap};
-pub use partition::{LinearPath, PartitionError, PartitionParams, VertexPath};
+pub use map::{CompositeError, CompositeInfo, CompositeMap, CompositePartsError};
+pub use partition::{PartitionError, PartitionParams};
 pub use triangulation::{Tiling, TriangulationError, check_tiling, triangulate};

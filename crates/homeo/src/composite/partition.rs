@@ -2,53 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use homeo_core::planar::{DomainError, DomainPair, PlanarDomain, Point2};
+use homeo_core::planar::{DomainError, PlanarDomain};
 
 use super::bound::{JacobianLimits, JacobianVerdict};
 use super::chart::Step;
 use super::triangulation::{Tiling, TriangulationError, triangulate};
 use crate::progress::Progress;
-
-/// How the vertices of one domain travel to those of another.
-pub trait VertexPath: Send + Sync {
-    /// All rings at a time from 0 to 1. They need not bound a domain; those at 0 and 1 do, and have the same number of
-    /// rings and vertices as all others.
-    fn rings(&self, time: f64) -> Vec<Vec<Point2>>;
-}
-
-/// Every vertex goes straight ahead.
-///
-/// ```
-/// use homeo::composite::{LinearPath, VertexPath};
-/// use homeo_core::planar::DomainPair;
-/// let triangle = |x: f64| vec![vec![[x, 0.0], [x + 1.0, 0.0], [x, 1.0]]];
-/// let path = LinearPath::new(DomainPair::new(triangle(0.0), triangle(3.0)).unwrap());
-/// assert_eq!(path.rings(0.5), triangle(1.5));
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct LinearPath {
-    pair: DomainPair,
-}
-
-impl LinearPath {
-    /// From the source to the target.
-    pub fn new(pair: DomainPair) -> Self {
-        Self { pair }
-    }
-}
-
-impl VertexPath for LinearPath {
-    fn rings(&self, time: f64) -> Vec<Vec<Point2>> {
-        let between = |(a, b): (&Point2, &Point2)| std::array::from_fn(|k| mix(a[k], b[k], time));
-        let rings = self.pair.source.rings().iter().zip(self.pair.target.rings());
-        rings.map(|(source, target)| source.iter().zip(target).map(between).collect()).collect()
-    }
-}
-
-/// Exactly the ends at 0 and 1.
-fn mix(from: f64, to: f64, time: f64) -> f64 {
-    if time == 1.0 || from == to { to } else { from + time * (to - from) }
-}
+use crate::shape::{ShapeError, ShapePath};
 
 /// What a partition may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +39,14 @@ pub enum PartitionError {
         time: f64,
         /// What is wrong there.
         error: DomainError,
+    },
+    /// There is no shape at a time.
+    #[error("at time {time}: {error}")]
+    NoShape {
+        /// The time.
+        time: f64,
+        /// What is wrong there.
+        error: ShapeError,
     },
     /// A domain was not cut into triangles.
     #[error("at time {time}: {error}")]
@@ -115,8 +83,9 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    pub fn at(path: &dyn VertexPath, time: f64) -> Result<Self, PartitionError> {
-        let domain = PlanarDomain::new(path.rings(time)).map_err(|error| PartitionError::NotADomain { time, error })?;
+    pub fn at(path: &dyn ShapePath, time: f64) -> Result<Self, PartitionError> {
+        let rings = path.at(time).map_err(|error| PartitionError::NoShape { time, error })?;
+        let domain = PlanarDomain::new(rings).map_err(|error| PartitionError::NotADomain { time, error })?;
         let tiling = triangulate(&domain).map_err(|error| PartitionError::NoTriangles { time, error })?;
         Ok(Self { time, domain, tiling })
     }
@@ -142,7 +111,7 @@ pub(super) struct Partition {
 /// # References
 /// Schneider 2017, algorithm 1, with a proof in the place of samples.
 pub(super) fn binary_partition(
-    path: &dyn VertexPath,
+    path: &dyn ShapePath,
     params: &PartitionParams,
     progress: &(dyn Progress + Sync),
 ) -> Result<Partition, PartitionError> {
@@ -179,7 +148,7 @@ pub(super) fn binary_partition(
 const CUTS: [f64; 7] = [0.5, 0.25, 0.75, 0.375, 0.625, 0.125, 0.875];
 
 /// A domain between two times, as near their middle as there is one; what is wrong in the middle if there is none.
-fn between(path: &dyn VertexPath, from: f64, to: f64) -> Result<Stage, PartitionError> {
+fn between(path: &dyn ShapePath, from: f64, to: f64) -> Result<Stage, PartitionError> {
     let mut stages = CUTS.iter().map(|part| Stage::at(path, from + part * (to - from)));
     let middle = stages.next().unwrap_or_else(|| Stage::at(path, to));
     middle.or_else(|error| stages.find_map(Result::ok).ok_or(error))
@@ -187,7 +156,7 @@ fn between(path: &dyn VertexPath, from: f64, to: f64) -> Result<Stage, Partition
 
 /// Proves every step of given times.
 pub(super) fn given_partition(
-    path: &dyn VertexPath,
+    path: &dyn ShapePath,
     times: &[f64],
     params: &PartitionParams,
     progress: &(dyn Progress + Sync),

@@ -7,10 +7,11 @@ use super::frame::{Frame, Local};
 use super::guide::Guide;
 use super::number::Ball;
 use super::{
-    CompositeMap, JacobianLimits, JacobianVerdict, LinearPath, PartitionError, PartitionParams, Tiling,
-    TriangulationError, check_tiling, triangulate,
+    CompositeMap, JacobianLimits, JacobianVerdict, PartitionError, PartitionParams, Tiling, TriangulationError,
+    check_tiling, triangulate,
 };
 use crate::progress::Silent;
+use crate::shape::LinearPath;
 
 fn step(rings: Vec<Vec<Point2>>, images: &[Point2]) -> Step {
     let domain = PlanarDomain::new(rings).unwrap();
@@ -263,9 +264,9 @@ fn kite() -> DomainPair {
 fn composite_maps_go_there_and_back() {
     let mut next = random();
     for pair in [kite(), turning_frame()] {
-        let path = LinearPath::new(pair.clone());
+        let path = LinearPath::between(&pair).unwrap();
         let (map, info) = CompositeMap::build(&path, &PartitionParams::default(), &Silent).unwrap();
-        assert!(info.least_determinant > 0.0 && map.bounds().len() == map.step_count());
+        assert!(info.least_determinant > 0.0 && info.bounds.len() == map.step_count());
         let [low, high] = pair.source.bounds();
         let mut count = 0;
         while count < 200 {
@@ -295,7 +296,8 @@ fn composite_maps_go_there_and_back() {
 
 #[test]
 fn near_vertices_and_edges_there_and_back() {
-    let (map, _) = CompositeMap::build(&LinearPath::new(kite()), &PartitionParams::default(), &Silent).unwrap();
+    let (map, _) =
+        CompositeMap::build(&LinearPath::between(&kite()).unwrap(), &PartitionParams::default(), &Silent).unwrap();
     for distance in [1e-3, 1e-8, 1e-14] {
         for point in [[distance, distance], [1.0 - distance, 1.0 - distance], [0.3, distance], [1.0 - distance, 0.6]] {
             let image = map.forward(point).unwrap();
@@ -309,7 +311,7 @@ fn near_vertices_and_edges_there_and_back() {
 fn what_stops_a_partition_is_said() {
     let turned: Vec<Point2> = square(1.0).iter().map(|p| p.map(|c| -c)).collect();
     let build = |pair: DomainPair, params: &PartitionParams| {
-        CompositeMap::build(&LinearPath::new(pair), params, &Silent).map(|(map, _)| map.step_count())
+        CompositeMap::build(&LinearPath::between(&pair).unwrap(), params, &Silent).map(|(map, _)| map.step_count())
     };
     let through_a_point = DomainPair::new(vec![square(1.0)], vec![turned]).unwrap();
     let usual = PartitionParams::default();

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use homeo_core::planar::{PlanarDomain, Point2};
+use rayon::prelude::*;
 
 use crate::map::PlanarBijection;
 
@@ -77,20 +78,22 @@ fn grid(map: &dyn PlanarBijection, axis: usize) -> Vec<Vec<[Point2; 2]>> {
     let size = [high[0] - low[0], high[1] - low[1]];
     let step = size[0].max(size[1]) / LINES as f64;
     let count = (size[1 - axis] / step) as usize;
-    let mut pieces = Vec::new();
-    for line in 0..=count {
-        let mut piece: Vec<[Point2; 2]> = Vec::new();
-        for sample in 0..=SAMPLES {
+    let pieces_of = |line: usize| {
+        let place = |sample: usize| {
             let mut point = [0.0; 2];
             point[axis] = low[axis] + size[axis] * sample as f64 / SAMPLES as f64;
             point[1 - axis] = low[1 - axis] + step * (line as f64 + 0.5);
-            match map.forward(point) {
-                Ok(image) => piece.push([point, image.point]),
-                Err(_) => pieces.push(std::mem::take(&mut piece)),
-            }
-        }
-        pieces.push(piece);
-    }
+            point
+        };
+        let points: Vec<Point2> = (0..=SAMPLES).map(place).collect();
+        let mut images = vec![None; points.len()];
+        map.forward_along(&points, &mut images);
+        let pairs: Vec<_> = points.into_iter().zip(images).collect();
+        let inside = pairs.split(|(_, image)| image.is_none());
+        let pair = |&(point, image): &(Point2, Option<Point2>)| image.map(|image| [point, image]);
+        inside.map(|piece| piece.iter().filter_map(pair).collect::<Vec<_>>()).collect::<Vec<_>>()
+    };
+    let mut pieces: Vec<_> = (0..=count).into_par_iter().flat_map_iter(pieces_of).collect();
     pieces.retain(|piece| piece.len() > 1);
     pieces
 }

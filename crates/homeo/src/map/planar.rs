@@ -54,6 +54,14 @@ pub trait PlanarBijection: Send + Sync {
         }
     }
 
+    /// Images of points that follow one another closely: fast, without a bound of the error; `None` for points outside the
+    /// source, up to rounding.
+    fn forward_along(&self, points: &[Point2], images: &mut [Option<Point2>]) {
+        for (image, &point) in images.iter_mut().zip(points) {
+            *image = self.forward(point).ok().map(|answer| answer.point);
+        }
+    }
+
     /// Images of many points, in parallel; the results do not depend on the number of threads.
     fn forward_batch(&self, points: &[Point2]) -> Vec<Result<Enclosed2, PlanarEvaluationError>> {
         points.par_iter().map(|&point| self.forward(point)).collect()

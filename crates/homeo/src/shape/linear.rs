@@ -1,5 +1,7 @@
 //! Straight paths of vertices.
 
+use homeo_core::planar::DomainPair;
+
 use super::ring::check_points;
 use super::{ShapeError, ShapePath, check_time, mix};
 
@@ -31,18 +33,32 @@ impl LinearPath {
     /// # Errors
     /// Numbers of rings or vertices differ, or coordinates are out of range.
     pub fn new(source: Vec<Vec<[f64; 2]>>, target: Vec<Vec<[f64; 2]>>) -> Result<Self, ShapeError> {
-        if source.len() != target.len() {
-            return Err(ShapeError::RingCounts { here: source.len(), there: target.len() });
-        }
-        for (ring, (a, b)) in source.iter().zip(&target).enumerate() {
-            if a.len() != b.len() {
-                return Err(ShapeError::VertexCounts { ring, here: a.len(), there: b.len() });
-            }
-            check_points(a)?;
-            check_points(b)?;
-        }
+        check_rings(&source, &target)?;
         Ok(Self { source, target })
     }
+
+    /// The path between the rings of two domains.
+    ///
+    /// # Errors
+    /// Coordinates are out of range.
+    pub fn between(pair: &DomainPair) -> Result<Self, ShapeError> {
+        Self::new(pair.source.rings().to_vec(), pair.target.rings().to_vec())
+    }
+}
+
+/// Refuses rings that do not correspond, or coordinates that are out of range.
+pub(super) fn check_rings(source: &[Vec<[f64; 2]>], target: &[Vec<[f64; 2]>]) -> Result<(), ShapeError> {
+    if source.len() != target.len() {
+        return Err(ShapeError::RingCounts { here: source.len(), there: target.len() });
+    }
+    for (ring, (a, b)) in source.iter().zip(target).enumerate() {
+        if a.len() != b.len() {
+            return Err(ShapeError::VertexCounts { ring, here: a.len(), there: b.len() });
+        }
+        check_points(a)?;
+        check_points(b)?;
+    }
+    Ok(())
 }
 
 impl ShapePath for LinearPath {

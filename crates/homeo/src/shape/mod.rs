@@ -28,6 +28,7 @@ mod lengths_and_angles;
 mod linear;
 mod ring;
 mod simple;
+mod turning;
 
 #[cfg(test)]
 mod tests;
@@ -37,6 +38,7 @@ pub use curvature::{CurvatureProfile, sample_closed};
 pub use lengths_and_angles::LengthsAndAngles;
 pub use linear::LinearPath;
 pub use simple::{NotSimple, check_simple, first_not_simple};
+pub use turning::TurningPath;
 
 /// Shapes from a source to a target.
 pub trait ShapePath: Send + Sync {

@@ -32,6 +32,12 @@ pub struct NotSimple {
     pub why: DomainError,
 }
 
+impl std::fmt::Display for NotSimple {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "at time {:.3} {}", self.t, self.why)
+    }
+}
+
 /// The first of the times `0, 1 / steps, 2 / steps, ..., 1` at which the shape bounds no domain.
 ///
 /// # Guarantee

@@ -3,8 +3,8 @@
 use std::io::{Cursor, Read, Write};
 use std::panic::catch_unwind;
 
-use homeo::certificate::{FoliationMap, StoredMap, read_map};
-use homeo::map::{Bijection, Foliation, PlanarBijection, Target};
+use homeo::certificate::{FoliationMap, PlanarMap, StoredMap, read_map};
+use homeo::map::{Bijection, Foliation, Target};
 use homeo_verify::verify_bytes;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
@@ -75,11 +75,15 @@ fn ask(map: &StoredMap) {
                 let at = shell.project_exact(&exact);
                 let _ = at.map(|at| (shell.unproject_exact(&at), shell.to_source_exact(&at)));
             }
-            StoredMap::Harmonic(map) => {
+            StoredMap::Planar(planar) => {
                 let ([x, y, _], [u, v, _]) = (point, exact);
+                let map = planar.as_bijection();
                 let _ = (map.forward([x, y]), map.inverse([x, y]));
-                let _ = (map.forward_exact(&[u.clone(), v.clone()]), map.inverse_exact(&[u, v]));
                 map.inverse_along(&[[x, y], [0.1, 0.1]], &mut [None; 2]);
+                map.forward_along(&[[x, y], [0.1, 0.1]], &mut [None; 2]);
+                if let PlanarMap::Harmonic(map) = planar {
+                    let _ = (map.forward_exact(&[u.clone(), v.clone()]), map.inverse_exact(&[u, v]));
+                }
             }
         }
     }

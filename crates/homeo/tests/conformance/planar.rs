@@ -3,11 +3,12 @@
 use std::f64::consts::TAU;
 use std::io::Cursor;
 
-use homeo::certificate::{Provenance, StoredMap, read_map, write_harmonic};
-use homeo::composite::{CompositeMap, LinearPath, PartitionParams};
+use homeo::certificate::{PlanarMap, Provenance, StoredMap, read_map, write_composite, write_harmonic};
+use homeo::composite::{CompositeMap, PartitionParams};
 use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
 use homeo::map::{HarmonicMap, PlanarBijection, PlanarEvaluationError};
 use homeo::progress::Silent;
+use homeo::shape::{LinearPath, TurningPath};
 use homeo_core::number::Rational;
 use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 use homeo_verify::{SourceMatch, Verdict, compare_polygon, verify_bytes};
@@ -194,7 +195,9 @@ fn is_near_boundary(domain: &PlanarDomain, [x, y]: Point2) -> bool {
 fn check_file(map: &HarmonicMap, pair: &DomainPair, again: impl FnOnce() -> HarmonicMap + Send) {
     let bytes = bytes_of(map);
     assert!(bytes == bytes_of(&in_threads(2, again)), "the file differs when built again with two threads");
-    let Ok(StoredMap::Harmonic(read)) = read_map(&bytes) else { panic!("what was written can be read") };
+    let Ok(StoredMap::Planar(PlanarMap::Harmonic(read))) = read_map(&bytes) else {
+        panic!("what was written can be read")
+    };
     assert!(bytes == bytes_of(&read), "the file differs when read and written");
     match verify_bytes(&bytes) {
         Ok(Verdict::Certified(claim)) => assert_eq!(claim.kind, "composite-harmonic"),
@@ -262,11 +265,50 @@ fn turns_are_those_asked_for() {
 fn composite_mean_value_maps_obey_the_same_laws() {
     let arrow = vec![vec![[0.0, 0.0], [1.0, 0.0], [0.35, 0.3], [0.0, 1.0]]];
     for pair in [pair(square(), arrow), pair(ring(0.0, [0.0, 0.0]), ring(0.4, [0.1, 0.0]))] {
-        let path = LinearPath::new(pair.clone());
+        let path = LinearPath::between(&pair).expect("a path");
         let (map, info) = CompositeMap::build(&path, &PartitionParams::default(), &Silent).expect("a map");
-        assert!(info.least_determinant > 0.0 && map.bounds().iter().all(|&bound| bound > 0.0));
+        assert!(info.least_determinant > 0.0 && info.bounds.iter().all(|&bound| bound > 0.0));
         check_any(&map, &pair);
+        check_composite_file(&map, &pair);
     }
+}
+
+/// Several holes are no obstacle to these.
+#[test]
+fn composite_mean_value_maps_take_several_holes() {
+    let hole = |x: f64, turn: f64| -> Vec<Point2> {
+        let corner = |k: usize| {
+            let angle = turn - TAU * k as f64 / 3.0;
+            [x + 0.12 * angle.cos(), 0.5 + 0.12 * angle.sin()]
+        };
+        (0..3).map(corner).collect()
+    };
+    let rings = |turn: f64| vec![square()[0].clone(), hole(0.3, turn), hole(0.7, -turn)];
+    let pair = pair(rings(0.0), rings(0.5));
+    let path = TurningPath::between(&pair, &[]).expect("a path");
+    let (map, _) = CompositeMap::build(&path, &PartitionParams::default(), &Silent).expect("a map");
+    check_any(&map, &pair);
+    check_composite_file(&map, &pair);
+}
+
+fn check_composite_file(map: &CompositeMap, pair: &DomainPair) {
+    let written = |map: &CompositeMap| {
+        let mut bytes = Cursor::new(Vec::new());
+        write_composite(map, &Provenance::default(), &mut bytes).expect("memory can be written");
+        bytes.into_inner()
+    };
+    let bytes = written(map);
+    let Ok(StoredMap::Planar(PlanarMap::Composite(read))) = read_map(&bytes) else {
+        panic!("what was written can be read")
+    };
+    assert!(bytes == written(&read), "the file differs when read and written");
+    let point = points(&pair.source).0[0];
+    assert_eq!(PlanarBijection::forward(&read, point), PlanarBijection::forward(map, point));
+    match verify_bytes(&bytes) {
+        Ok(Verdict::Certified(claim)) => assert_eq!(claim.kind, "composite-mean-value"),
+        other => panic!("not certified: {other:?}"),
+    }
+    assert_eq!(compare_polygon(&bytes, pair.source.rings()), Ok(SourceMatch::Same));
 }
 
 /// The size of coordinates does not matter, nor how thin a shape is.

@@ -1,0 +1,56 @@
+//! How one polygon becomes another: the ways that there are, in the order in which they are tried.
+
+use homeo::shape::{LengthsAndAngles, LinearPath, ShapePath, TurningPath};
+use homeo_core::planar::DomainPair;
+
+use crate::args::PathName;
+
+/// A way from one polygon to another.
+pub struct Way {
+    pub name: &'static str,
+    pub path: Box<dyn ShapePath>,
+    /// By how many degrees the hole turns against the outer ring in all, if the way says so.
+    pub turn: Option<f64>,
+}
+
+/// The ways of a name, or why there is none. `turn` is by how many degrees a hole shall turn.
+pub fn ways(pair: &DomainPair, name: PathName, turn: Option<f64>) -> Vec<Result<Way, String>> {
+    let names = match name {
+        PathName::Straight => vec!["straight"],
+        PathName::Angles => vec!["angles"],
+        PathName::Turning => vec!["turning"],
+        PathName::Auto if pair.source.rings().len() > 1 => vec!["turning", "straight"],
+        PathName::Auto => vec!["angles", "straight", "turning"],
+    };
+    names.into_iter().map(|name| way(pair, name, turn).map_err(|error| format!("{name}: {error}"))).collect()
+}
+
+fn way(pair: &DomainPair, name: &'static str, turn: Option<f64>) -> Result<Way, String> {
+    match name {
+        "straight" => {
+            let path = LinearPath::between(pair).map_err(|e| e.to_string())?;
+            Ok(Way { name, path: Box::new(path), turn: None })
+        }
+        "turning" => {
+            let path = turning(pair, turn).map_err(|e| e.to_string())?;
+            let turns = path.turns_in_degrees();
+            Ok(Way { name, path: Box::new(path), turn: turns.get(1).map(|inner| inner - turns[0]) })
+        }
+        _ => {
+            let [source, target] = [&pair.source, &pair.target].map(|domain| domain.rings());
+            if source.len() > 1 {
+                return Err("it is for polygons without holes".to_owned());
+            }
+            let path = LengthsAndAngles::new(source[0].clone(), target[0].clone()).map_err(|e| e.to_string())?;
+            Ok(Way { name, path: Box::new(path), turn: None })
+        }
+    }
+}
+
+/// Holes turn by as much more than the outer ring as is asked for.
+fn turning(pair: &DomainPair, turn: Option<f64>) -> Result<TurningPath, homeo::shape::ShapeError> {
+    let outer = TurningPath::between(pair, &[])?.turns_in_degrees()[0];
+    let mut degrees = vec![outer + turn.unwrap_or(0.0); pair.source.rings().len()];
+    degrees[0] = outer;
+    TurningPath::between(pair, &degrees)
+}

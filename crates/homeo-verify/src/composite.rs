@@ -1,0 +1,172 @@
+//! Rules D and C1-C3: a composite mean value map is a homeomorphism between planar domains.
+//!
+//! *Theorem.* Let the vertices of two domains correspond, and let the Jacobian determinant of the mean value map be
+//! positive at every point of the open first domain. Then the map is a homeomorphism of the closed domains, linear on every
+//! edge: it takes the rings to the rings, so its degree over a point is 1 inside the second domain and 0 outside; every
+//! preimage counts +1. So is a composition of such maps. (Proof, and the formulas near edges and vertices:
+//! `docs/theory/composite.md`.)
+
+use crate::map_file::CompositeData;
+use crate::mean_value::{Chart, Frame, Step};
+use crate::number::{Point, orientation_2d};
+use crate::rings::Rings;
+use crate::verdict::{Checked, Obstacle, Stop, check, refuted};
+use std::cmp::Ordering;
+use std::collections::{BTreeSet, VecDeque};
+
+/// So many boxes of one chart are bounded at most: some ten seconds of work for a few hundred vertices.
+const BOXES_PER_CHART: u32 = 300_000;
+/// Charts that are bounded before it is seen whether one fails: a fixed number, so that the first one found does not
+/// depend on the number of threads.
+const CHUNK: usize = 256;
+
+/// Applies the rules and counts what was checked.
+pub(crate) fn check_composite(data: &CompositeData) -> Checked<Vec<(&'static str, u64)>> {
+    let is_finite = |points: &[Point]| points.iter().flatten().all(|x| x.is_finite());
+    let all_finite = data.stages.iter().all(|points| is_finite(points));
+    check(all_finite, "C1", "a vertex of a polygon is not finite", &[], &[])?;
+    for (number, points) in data.stages.iter().enumerate() {
+        Rings { points, sizes: &data.ring_sizes }.check_domain(&format!("domain {number}"))?;
+    }
+    let rings = Rings { points: &data.stages[0], sizes: &data.ring_sizes };
+    let boundary: Vec<[u32; 2]> = rings.edges().collect();
+    for (number, tiling) in data.tilings.iter().enumerate() {
+        check(is_finite(&tiling.added), "C1", &format!("an added point of step {number} is not finite"), &[], &[])?;
+        let corners: Vec<Point> = data.stages[number].iter().chain(&tiling.added).copied().collect();
+        check_tiling(number, &corners, &tiling.triangles, &boundary)?;
+    }
+    let mut boxes = 0;
+    for number in 0..data.tilings.len() {
+        boxes += check_step(data, number, &boundary)?;
+    }
+    let triangles = data.tilings.iter().map(|tiling| tiling.triangles.len() as u64 / 3).sum();
+    Ok(vec![
+        ("edges of all domains that meet in common ends only (rule D)", (data.stages.len() * boundary.len()) as u64),
+        ("triangles that tile the domains, edge to edge (rule C2)", triangles),
+        ("steps whose Jacobian determinant is positive everywhere (rule C3)", data.tilings.len() as u64),
+        ("boxes that it is bounded in (rule C3)", boxes),
+    ])
+}
+
+/// Rule C2: all triangles are counter-clockwise, no two use an edge alike, and those used once only are the boundary's.
+fn check_tiling(step: usize, corners: &[Point], triangles: &[u32], boundary: &[[u32; 2]]) -> Checked {
+    let mut edges = BTreeSet::new();
+    for (t, triangle) in triangles.as_chunks::<3>().0.iter().enumerate() {
+        let rule = |holds: bool, what: &str| check(holds, "C2", &format!("{what} (step {step})"), &[t], triangle);
+        let exist = triangle.iter().all(|&v| (v as usize) < corners.len());
+        rule(exist, "a triangle has a corner that does not exist")?;
+        let [a, b, c] = triangle.map(|v| corners[v as usize]);
+        rule(orientation_2d(a, b, c) == Ordering::Greater, "a triangle is turned over or flat")?;
+        for k in 0..3 {
+            rule(edges.insert([triangle[k], triangle[(k + 1) % 3]]), "two triangles use an edge alike")?;
+        }
+    }
+    let mut expected: BTreeSet<_> = boundary.iter().copied().collect();
+    for &[a, b] in &edges {
+        let is_expected = expected.remove(&[a, b]);
+        let message = format!("an edge is neither between two triangles nor on the boundary, or both (step {step})");
+        check(edges.contains(&[b, a]) != is_expected, "C2", &message, &[], &[a, b])?;
+    }
+    let message = format!("an edge of the domain belongs to no triangle (step {step})");
+    check(expected.is_empty(), "C2", &message, &[], expected.first().map_or(&[], |edge| &edge[..]))
+}
+
+/// What is known of a chart: how many boxes it took, or where it fails or is undecided.
+enum Outcome {
+    Positive(u64),
+    Negative([f64; 2]),
+    Undecided([f64; 2]),
+}
+
+/// Rule C3: the determinant is positive in all charts. Counts the boxes.
+fn check_step(data: &CompositeData, number: usize, boundary: &[[u32; 2]]) -> Checked<u64> {
+    let flat = |points: &[Point]| points.iter().map(|&[x, y, _]| [x, y]).collect::<Vec<_>>();
+    let tiling = &data.tilings[number];
+    let [points, images, added] = [&data.stages[number], &data.stages[number + 1], &tiling.added].map(|p| flat(p));
+    let (mut next, mut previous) = (vec![0; points.len()], vec![0; points.len()]);
+    boundary.iter().for_each(|&[a, b]| (next[a as usize], previous[b as usize]) = (b, a));
+    let step = Step { points: &points, images: &images, added: &added, next: &next, previous: &previous };
+    let triangles = tiling.triangles.as_chunks::<3>().0;
+    let charts: Vec<(usize, Chart)> = triangles
+        .iter()
+        .enumerate()
+        .flat_map(|(t, &corners)| step.charts(corners).into_iter().map(move |c| (t, c)))
+        .collect();
+    let mut boxes = 0;
+    for chunk in charts.chunks(CHUNK) {
+        for (outcome, (t, chart)) in in_parallel(chunk, |(_, chart)| bound(&step, chart)).into_iter().zip(chunk) {
+            let place = |at: [f64; 2]| chart.place(step.corner(chart.apex()), at);
+            match outcome {
+                Outcome::Positive(count) => boxes += count,
+                Outcome::Negative(at) => {
+                    let message = format!("the mean value map of step {number} folds round the point {:?}", place(at));
+                    return Err(refuted("C3", message, &[*t], &triangles[*t]));
+                }
+                Outcome::Undecided(at) => {
+                    return Err(Stop::Undecided(Obstacle {
+                        message: format!(
+                            "rule C3: the sign of the Jacobian determinant of step {number} near {:?} is not known after \
+                             {BOXES_PER_CHART} boxes",
+                            place(at)
+                        ),
+                        remedy: "more domains between source and target".to_owned(),
+                    }));
+                }
+            }
+        }
+    }
+    Ok(boxes)
+}
+
+/// Bounds the determinant in a chart, halving boxes until its sign is known.
+fn bound(step: &Step, chart: &Chart) -> Outcome {
+    let mut frame = Frame::new(step, chart);
+    // Large boxes first: a fold shows before the places where it ends are bisected without end.
+    let mut waiting = VecDeque::from([[[0.0, 1.0], [0.0, 1.0]]]);
+    let mut boxes = 0;
+    while let Some([s, lambda]) = waiting.pop_front() {
+        let middle = [s, lambda].map(|[low, high]| 0.5 * (low + high));
+        if boxes == BOXES_PER_CHART {
+            return Outcome::Undecided(middle);
+        }
+        boxes += 1;
+        let found = frame.enclose(s, lambda);
+        if found.determinant.is_negative() {
+            return Outcome::Negative(middle);
+        }
+        if !found.determinant.is_positive() {
+            match found.splits_lambda {
+                true => waiting.extend([[s, [lambda[0], middle[1]]], [s, [middle[1], lambda[1]]]]),
+                false => waiting.extend([[[s[0], middle[0]], lambda], [[middle[0], s[1]], lambda]]),
+            }
+        }
+    }
+    Outcome::Positive(boxes.into())
+}
+
+/// The results for all items, in order, by as many threads as there are processors.
+fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let threads = std::thread::available_parallelism().map_or(1, |count| count.get());
+    let size = items.len().div_ceil(8 * threads).max(1);
+    let parts: Vec<&[T]> = items.chunks(size).collect();
+    let next = std::sync::atomic::AtomicUsize::new(0);
+    let run = || {
+        let mut done = Vec::new();
+        while let Some((number, part)) = {
+            let number = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            parts.get(number).map(|part| (number, part))
+        } {
+            done.push((number, part.iter().map(&work).collect::<Vec<R>>()));
+        }
+        done
+    };
+    let mut all: Vec<(usize, Vec<R>)> = std::thread::scope(|scope| {
+        let handles: Vec<_> = (0..threads).map(|_| scope.spawn(run)).collect();
+        handles
+            .into_iter()
+            .flat_map(|handle| handle.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    });
+    all.sort_by_key(|(number, _)| *number);
+    all.into_iter().flat_map(|(_, results)| results).collect()
+}

@@ -1,0 +1,369 @@
+//! The Jacobian determinant of a mean value map, enclosed in boxes of charts up to edges and vertices.
+//!
+//! Formulas (0) to (4) of `docs/theory/composite.md`, in balls, differentiated forwards. A triangle of the tiling is cut
+//! into charts `v + s (e0 + λ e1)`, `0 <= s, λ <= 1`, that hold no vertex of the domain but perhaps `v`, and touch no
+//! edge but perhaps one along `λ = 0`. What is singular there cancels by hand:
+//!
+//! * every edge's half tangent is a quotient of `r r' + a . b`, or of `r r' - a . b`, and `a x b`; in an edge at `v` a factor
+//!   `s` cancels;
+//! * if the chart touches an edge, its half tangent times `λ` is finite, and everything is multiplied by `λ`.
+//!
+//! `M` is any matrix: the nearer it is to the derivative, the narrower the enclosure. So it is found in doubles.
+
+use crate::ball::{Ball, Dual, Vector, cross, dot, length, vector};
+
+type Point2 = [f64; 2];
+
+/// A mean value map of a domain.
+pub(crate) struct Step<'a> {
+    /// Vertices of the domain, ring after ring.
+    pub(crate) points: &'a [Point2],
+    /// Where they go.
+    pub(crate) images: &'a [Point2],
+    /// Corners of triangles that are no vertices, numbered after these.
+    pub(crate) added: &'a [Point2],
+    /// The next vertex of the same ring.
+    pub(crate) next: &'a [u32],
+    pub(crate) previous: &'a [u32],
+}
+
+/// Which end of the edge that a chart touches the apex is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Touch {
+    Nothing,
+    Begin,
+    End,
+}
+
+/// Part of a triangle of the tiling: the points `v + s (e0 + λ e1)`.
+pub(crate) struct Chart {
+    apex: u32,
+    axes: [Vector; 2],
+    touch: Touch,
+}
+
+impl Chart {
+    pub(crate) fn apex(&self) -> u32 {
+        self.apex
+    }
+
+    /// Where a point of it is, rounded.
+    pub(crate) fn place(&self, apex: Point2, [s, lambda]: [f64; 2]) -> Point2 {
+        let [e0, e1] = self.axes.map(|axis| axis.map(|x| x.middle));
+        [0, 1].map(|k| apex[k] + s * (e0[k] + lambda * e1[k]))
+    }
+}
+
+impl Step<'_> {
+    pub(crate) fn corner(&self, number: u32) -> Point2 {
+        let number = number as usize;
+        self.points.get(number).copied().unwrap_or_else(|| self.added[number - self.points.len()])
+    }
+
+    fn is_vertex(&self, corner: u32) -> bool {
+        (corner as usize) < self.points.len()
+    }
+
+    /// The charts of a triangle: with several vertices of the domain it is cut in the middle of the sides between them.
+    pub(crate) fn charts(&self, triangle: [u32; 3]) -> Vec<Chart> {
+        let [a, b, c] = triangle;
+        let turned = [[a, b, c], [b, c, a], [c, a, b]];
+        let find = |wanted: [bool; 3]| turned.into_iter().find(|t| t.map(|corner| self.is_vertex(corner)) == wanted);
+        let fractions = |whole: f64, part: f64| Ball::exact(whole) * Ball::exact(part).inverse();
+        let (one, half) = (Ball::ONE, Ball::exact(0.5));
+        // Multiples of the sides from the apex: `e0 = f0 side`, `e1 = f1 side + f2 other`.
+        let whole = [one, -one, one];
+        let half_of = [half, -half, one];
+        let sixth = [half, fractions(-1.0, 6.0), fractions(1.0, 3.0)];
+        let both = |[v, from, to]: [u32; 3], parts: [Ball; 3], back: [u32; 3]| {
+            [self.chart([v, from, to], parts), self.chart(back, parts)]
+        };
+        if let Some(corners) = find([false; 3]).or_else(|| find([true, false, false])) {
+            return vec![self.chart(corners, whole)];
+        }
+        if let Some([v, from, to]) = find([true, true, false]) {
+            return both([v, from, to], half_of, [from, v, to]).into();
+        }
+        turned.into_iter().flat_map(|[v, from, to]| both([v, from, to], sixth, [v, to, from])).collect()
+    }
+
+    fn chart(&self, [v, from, to]: [u32; 3], [f0, f1, f2]: [Ball; 3]) -> Chart {
+        let [at, from_at, to_at] = [v, from, to].map(|corner| self.corner(corner));
+        let side = difference(from_at, at);
+        let other = difference(to_at, at);
+        let axes = [side.map(|x| f0 * x), vector(|k| f1 * side[k] + f2 * other[k])];
+        let is_edge = |a: u32, b: u32| self.is_vertex(a) && self.next[a as usize] == b;
+        let touch = match (is_edge(v, from), is_edge(from, v)) {
+            (true, _) => Touch::Begin,
+            (_, true) => Touch::End,
+            _ => Touch::Nothing,
+        };
+        Chart { apex: v, axes, touch }
+    }
+}
+
+fn difference(a: Point2, b: Point2) -> Vector {
+    vector(|k| Ball::exact(a[k]) - Ball::exact(b[k]))
+}
+
+/// A vertex as seen from a point of the domain.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// The vector to it.
+    towards: Vector,
+    distance: Dual,
+    inverse: Dual,
+}
+
+/// A chart with what is computed once for all its boxes.
+pub(crate) struct Frame<'a> {
+    step: &'a Step<'a>,
+    chart: &'a Chart,
+    /// Whether the apex is a vertex of the domain.
+    is_at_vertex: bool,
+    /// Of each vertex: its place and its image, less those of the apex, or of the first vertex if the apex is none.
+    offsets: Vec<[Vector; 2]>,
+    /// Of each vertex: the vector to the next one.
+    edges: Vec<Vector>,
+    seen: Vec<Seen>,
+    /// Of the edge from each vertex.
+    tangents: Vec<Dual>,
+}
+
+/// An affine map near the mean value map, by doubles: what it misses of the images is little.
+#[derive(Clone, Copy)]
+struct Fit {
+    matrix: [Point2; 2],
+    /// Zero at a vertex, which goes to its image.
+    shift: Point2,
+}
+
+impl Fit {
+    fn apply(&self, v: Vector) -> Vector {
+        vector(|k| Ball::exact(self.matrix[k][0]) * v[0] + Ball::exact(self.matrix[k][1]) * v[1])
+    }
+}
+
+/// What is known in a box of a chart.
+pub(crate) struct Enclosure {
+    pub(crate) determinant: Ball,
+    /// Whether `λ` should be halved, or else `s`.
+    pub(crate) splits_lambda: bool,
+}
+
+impl<'a> Frame<'a> {
+    pub(crate) fn new(step: &'a Step<'a>, chart: &'a Chart) -> Frame<'a> {
+        let is_at_vertex = step.is_vertex(chart.apex);
+        let apex = step.corner(chart.apex);
+        let image = step.images[if is_at_vertex { chart.apex as usize } else { 0 }];
+        let offset = |(&p, &q): (&Point2, &Point2)| [difference(p, apex), difference(q, image)];
+        let offsets: Vec<_> = step.points.iter().zip(step.images).map(offset).collect();
+        let edge = |(&p, &next): (&Point2, &u32)| difference(step.points[next as usize], p);
+        let edges = step.points.iter().zip(step.next).map(edge).collect();
+        let nothing = Seen { towards: [Ball::ZERO; 2], distance: Dual::ZERO, inverse: Dual::ZERO };
+        let (seen, tangents) = (vec![nothing; offsets.len()], vec![Dual::ZERO; offsets.len()]);
+        Frame { step, chart, is_at_vertex, offsets, edges, seen, tangents }
+    }
+
+    /// Encloses the determinant over a box of `s` and `λ`.
+    pub(crate) fn enclose(&mut self, s: [f64; 2], lambda: [f64; 2]) -> Enclosure {
+        let [ball_s, ball_lambda] = [s, lambda].map(|[low, high]| Ball::between(low, high));
+        let [e0, e1] = self.chart.axes;
+        let along = vector(|k| e0[k] + ball_lambda * e1[k]);
+        let middle = [0, 1].map(|k| ball_s.middle * along[k].middle);
+        let (fit, nearest) = self.fit(middle);
+        let determinant = match self.is_at_vertex {
+            true => self.at_vertex(ball_s, ball_lambda, along, fit),
+            false => self.inside(vector(|k| ball_s * along[k]), fit),
+        };
+        let size = |v: Vector| v[0].middle.hypot(v[1].middle);
+        let width = size(e1) * (lambda[1] - lambda[0]);
+        let turned = if self.is_at_vertex { width / size(along) } else { 0.0 };
+        let splits_lambda = (s[1] * width / nearest).max(turned) > size(along) * (s[1] - s[0]) / nearest;
+        Enclosure { determinant, splits_lambda }
+    }
+
+    /// An affine map that takes the vertices near a point close to their images, by least squares with the inverse fourth
+    /// powers of distances as weights; and how near the nearest vertex is.
+    fn fit(&self, at: Point2) -> (Fit, f64) {
+        let apex = self.is_at_vertex.then_some(self.chart.apex as usize);
+        let weighted = || {
+            let others = self.offsets.iter().enumerate().filter(|(i, _)| apex != Some(*i));
+            others.map(|(_, offset)| {
+                let [p, q] = offset.map(|vector| vector.map(|x| x.middle));
+                let square = (p[0] - at[0]).powi(2) + (p[1] - at[1]).powi(2);
+                (1.0 / (square * square), square, p, q)
+            })
+        };
+        let (mut total, mut means, mut nearest) = (0.0, [[0.0; 2]; 2], f64::INFINITY);
+        for (weight, square, p, q) in weighted() {
+            total += weight;
+            (0..2)
+                .for_each(|k| (means[0][k], means[1][k]) = (means[0][k] + weight * p[k], means[1][k] + weight * q[k]));
+            nearest = square.min(nearest);
+        }
+        let [p0, q0] = means.map(|sum| sum.map(|x| if self.is_at_vertex { 0.0 } else { x / total }));
+        let (mut normal, mut mixed) = ([0.0; 3], [[0.0; 2]; 2]);
+        for (weight, _, p, q) in weighted() {
+            let [x, y] = [p[0] - p0[0], p[1] - p0[1]];
+            let products = [x * x, x * y, y * y];
+            (0..3).for_each(|k| normal[k] += weight * products[k]);
+            (0..2).for_each(|k| {
+                let to = weight * (q[k] - q0[k]);
+                mixed[k] = [mixed[k][0] + to * x, mixed[k][1] + to * y];
+            });
+        }
+        // A little of the identity, where vertices are almost in line.
+        let ridge = 1e-6 * (normal[0] + normal[2]);
+        let [a, b, c] = [normal[0] + ridge, normal[1], normal[2] + ridge];
+        (0..2).for_each(|k| mixed[k][k] += ridge);
+        let matrix = mixed.map(|[x, y]| [x * c - y * b, y * a - x * b].map(|m| m / (a * c - b * b)));
+        let shift = [0, 1].map(|k| q0[k] - matrix[k][0] * p0[0] - matrix[k][1] * p0[1]);
+        let fit = Fit { matrix, shift };
+        let is_finite = matrix.iter().flatten().chain(&shift).all(|x| x.is_finite());
+        (if is_finite { fit } else { Fit { matrix: [[1.0, 0.0], [0.0, 1.0]], shift: [0.0; 2] } }, nearest.sqrt())
+    }
+
+    /// Formula (0), at `v + position`.
+    fn inside(&mut self, position: Vector, fit: Fit) -> Ball {
+        let motion = [[Ball::ONE, Ball::ZERO], [Ball::ZERO, Ball::ONE]];
+        self.look(position, motion, None);
+        let [weight, x, y] = self.sums(None, fit);
+        let rest = [x.over(weight), y.over(weight)];
+        let column = |k: usize| vector(|row| Ball::exact(fit.matrix[row][k]) + rest[row].0[k + 1]);
+        cross(column(0), column(1))
+    }
+
+    /// Formula (4), at `v + s along`. In the place of `∂/∂λ` stands `∂/∂λ - c s ∂/∂s`, which goes almost across.
+    fn at_vertex(&mut self, s: Ball, lambda: Ball, along: Vector, fit: Fit) -> Ball {
+        let [e0, e1] = self.chart.axes;
+        let turn = cross(e0, e1);
+        let skew = Ball::exact(dot(e1, along).middle / dot(along, along).middle);
+        let across = vector(|k| e1[k] - skew * along[k]);
+        let motion = [along, across.map(|x| s * x)];
+        let apex = self.chart.apex as usize;
+        self.look(vector(|k| s * along[k]), motion, Some(apex));
+        // `e` itself only depends on `λ`.
+        let size = length(along);
+        let length = Dual([size, Ball::ZERO, dot(along, e1) * size.inverse()]);
+        let by_length = Dual::constant(Ball::ONE).over(length);
+        let s_dual = Dual([s, Ball::ONE, -(skew * s)]);
+        let (mut own, mut touched) = (Dual::ZERO, None);
+        for (touch, other, edge) in [
+            (Touch::Begin, self.step.next[apex], apex),
+            (Touch::End, self.step.previous[apex], self.step.previous[apex] as usize),
+        ] {
+            let is_touched = touch == self.chart.touch;
+            let tangent = self.tangent_at_vertex(other as usize, touch, along, length, motion);
+            if is_touched {
+                touched = Some((tangent, other as usize));
+                self.tangents[edge] = Dual::ZERO;
+            } else {
+                self.tangents[edge] = tangent;
+                own = own + tangent * by_length;
+            }
+        }
+        let [weight, mut x, mut y] = self.sums(Some(apex), fit);
+        let mut total = own + s_dual * weight;
+        if let Some((tangent, other)) = touched {
+            let kappa = Dual([lambda, Ball::ZERO, Ball::ONE]);
+            let inverse = self.seen[other].inverse;
+            total = kappa * total + tangent * (by_length + s_dual * inverse);
+            let residual = self.residual(other, fit);
+            let share = tangent * inverse;
+            x = kappa * x + share.scaled(residual[0]);
+            y = kappa * y + share.scaled(residual[1]);
+        }
+        let rest = [x.over(total), y.over(total)];
+        let g = vector(|k| rest[k].0[0] + s * rest[k].0[1]);
+        let h = vector(|k| rest[k].0[2] - skew * rest[k].0[0]);
+        let mixed = cross(fit.apply(along), h) + cross(g, fit.apply(across)) + cross(g, h);
+        let [row, other] = fit.matrix.map(|row| row.map(Ball::exact));
+        cross(row, other) + mixed * turn.inverse()
+    }
+
+    /// Looks at all vertices from `v + position`, which moves by `motion`, but at the apex if it is a vertex; and at all edges
+    /// but those at the apex.
+    fn look(&mut self, position: Vector, motion: [Vector; 2], apex: Option<usize>) {
+        for (i, [offset, _]) in self.offsets.iter().enumerate() {
+            if apex == Some(i) {
+                continue;
+            }
+            let towards = vector(|k| offset[k] - position[k]);
+            let distance = length(towards);
+            let inverse = distance.inverse();
+            let [first, second] = motion.map(|moved| -(dot(towards, moved) * inverse));
+            let square = -(inverse * inverse);
+            self.seen[i] = Seen {
+                towards,
+                distance: Dual([distance, first, second]),
+                inverse: Dual([inverse, first * square, second * square]),
+            };
+        }
+        for (i, &next) in self.step.next.iter().enumerate() {
+            let j = next as usize;
+            if apex.is_none_or(|v| v != i && v != j) {
+                self.tangents[i] = self.tangent(i, j, motion);
+            }
+        }
+    }
+
+    /// The half tangent of an edge that does not end at the apex.
+    fn tangent(&self, i: usize, j: usize, motion: [Vector; 2]) -> Dual {
+        let (a, b, edge) = (&self.seen[i], &self.seen[j], self.edges[i]);
+        // a x b = a x edge; both `a` and `b` move against the point.
+        let [first, second] = motion.map(|moved| cross(edge, moved));
+        let sine = Dual([cross(a.towards, edge), first, second]);
+        let sum = vector(|k| a.towards[k] + b.towards[k]);
+        let [first, second] = motion.map(|moved| -dot(sum, moved));
+        let cosine = Dual([dot(a.towards, b.towards), first, second]);
+        half_tangent(sine, cosine, a.distance * b.distance)
+    }
+
+    /// That of an edge between the apex and another vertex, times `λ` if the chart touches it.
+    fn tangent_at_vertex(&self, other: usize, touch: Touch, along: Vector, length: Dual, motion: [Vector; 2]) -> Dual {
+        let [e0, e1] = self.chart.axes;
+        let seen = &self.seen[other];
+        let offset = self.offsets[other][0];
+        let sign = |x: Ball| if touch == Touch::Begin { x } else { -x };
+        // The vector to the apex is `-s e`: what follows is divided by `s`, and `e x (vector to the other end)` is constant.
+        let cosine =
+            Dual([-dot(along, seen.towards), dot(along, motion[0]), dot(along, motion[1]) - dot(e1, seen.towards)]);
+        let product = length * seen.distance;
+        if touch == self.chart.touch {
+            return (product - cosine).scaled((sign(cross(e0, e1)) * Ball::exact(2.0)).inverse());
+        }
+        let sine = Dual([sign(cross(offset, along)), Ball::ZERO, sign(cross(offset, e1))]);
+        half_tangent(sine, cosine, product)
+    }
+
+    /// How far a vertex misses its image under the affine map.
+    fn residual(&self, vertex: usize, fit: Fit) -> Vector {
+        let [p, q] = self.offsets[vertex];
+        let there = fit.apply(p);
+        vector(|k| q[k] - Ball::exact(fit.shift[k]) - there[k])
+    }
+
+    /// The sums of weights, and of weights times residuals, of all vertices but the apex.
+    fn sums(&self, apex: Option<usize>, fit: Fit) -> [Dual; 3] {
+        let mut sums = [Dual::ZERO; 3];
+        for i in (0..self.offsets.len()).filter(|&i| apex != Some(i)) {
+            let before = self.step.previous[i] as usize;
+            let weight = (self.tangents[before] + self.tangents[i]) * self.seen[i].inverse;
+            let residual = self.residual(i, fit);
+            sums[0] = sums[0] + weight;
+            sums[1] = sums[1] + weight.scaled(residual[0]);
+            sums[2] = sums[2] + weight.scaled(residual[1]);
+        }
+        sums
+    }
+}
+
+/// `tan(α / 2)` by sine and cosine of `α`, both multiplied by the same positive number: of two equal formulas that whose divisor is
+/// not small.
+fn half_tangent(sine: Dual, cosine: Dual, one: Dual) -> Dual {
+    match cosine.0[0].middle < 0.0 {
+        true => (one - cosine).over(sine),
+        false => sine.over(one + cosine),
+    }
+}
