@@ -8,7 +8,7 @@ use std::path::Path;
 
 use homeo::certificate::{Provenance, write_harmonic};
 use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
-use homeo::map::{HarmonicMap, PlanarBijection};
+use homeo::map::{Distortion, HarmonicMap, PlanarBijection};
 use homeo::progress::Progress;
 use homeo::warp::{Filter, Placement, backward_field};
 use homeo_core::planar::PlanarDomain;
@@ -94,6 +94,15 @@ fn shape(name: MiddleName) -> MiddleShape {
     match name {
         MiddleName::Lengths => MiddleShape::AveragedLengths,
         MiddleName::Regular => MiddleShape::Regular,
+        MiddleName::Optimized => MiddleShape::Optimized(Distortion::Conformal),
+    }
+}
+
+fn name(middle: MiddleName) -> &'static str {
+    match middle {
+        MiddleName::Lengths => "lengths",
+        MiddleName::Regular => "regular",
+        MiddleName::Optimized => "optimized",
     }
 }
 
@@ -121,7 +130,7 @@ fn provenance(options: &WarpArgs, source: &Path, turn: Option<f64>) -> Provenanc
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
             "triangles": options.polygons.triangles, "turn_degrees": turn,
-            "middle": if options.polygons.middle == MiddleName::Regular { "regular" } else { "lengths" },
+            "middle": name(options.polygons.middle),
         }),
     }
 }
