@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
+use faer::{Mat, MatRef};
 use homeo_core::planar::{PlanarDomain, Point2};
 use rayon::prelude::*;
 
@@ -77,22 +77,7 @@ impl BoundaryElements {
         let (count, functions) = (elements.all.len(), data.functions);
         let rows: Vec<Vec<f64>> = (0..2 * count).into_par_iter().map(|i| right_side(elements, i, data)).collect();
         let flux = self.factor.solve(&Mat::from_fn(2 * count, functions, |i, f| rows[i][f]));
-        let mut coefficients = vec![0.0; COEFFICIENTS * count * functions];
-        for (e, element) in elements.all.iter().enumerate() {
-            let edge = &elements.edges[element.edge];
-            let [middle, half] = element.shares(edge);
-            let going = data.profile.on(middle, half);
-            let [begin, end] = edge.vertices.map(|v| data.at_vertex(v));
-            let block = &mut coefficients[COEFFICIENTS * e * functions..COEFFICIENTS * (e + 1) * functions];
-            for f in 0..functions {
-                let rise = end[f] - begin[f];
-                block[f] = flux[(2 * e, f)];
-                block[functions + f] = flux[(2 * e + 1, f)];
-                block[2 * functions + f] = begin[f] + rise * going[0];
-                block[3 * functions + f] = rise * going[1];
-                block[4 * functions + f] = rise * going[2];
-            }
-        }
+        let coefficients = coefficients(elements, data, flux.as_ref());
         BoundaryElementFunctions::new(elements.clone(), functions, coefficients, Trace::Given(data.clone()))
     }
 
@@ -104,58 +89,88 @@ impl BoundaryElements {
     pub fn solve_sampled(
         &self,
         functions: usize,
-        values: impl Fn(Point2, &mut [f64]) + Sync,
+        values: impl Fn(Point2, &mut [f64]),
     ) -> Result<BoundaryElementFunctions, HarmonicFunctionError> {
-        let elements = &self.elements;
-        let count = elements.all.len();
-        let mut coefficients = vec![0.0; COEFFICIENTS * count * functions];
-        let mut sampled = [0; 3].map(|_| vec![0.0; functions]);
-        for (e, block) in coefficients.chunks_exact_mut(COEFFICIENTS * functions).enumerate() {
-            let element = &elements.all[e];
-            let edge = &elements.edges[element.edge];
-            for (sample, t) in sampled.iter_mut().zip([-1.0, 0.0, 1.0]) {
-                let point = edge.point(element.from_end, element.middle + t * element.half);
-                values(point.map(|x| x / elements.scale), sample);
-            }
-            let [begin, middle, end] = &sampled;
-            for f in 0..functions {
-                block[2 * functions + f] = middle[f];
-                block[3 * functions + f] = 0.5 * (end[f] - begin[f]);
-                block[4 * functions + f] = 0.5 * (begin[f] + end[f]) - middle[f];
-            }
-        }
-        if let Some(entry) = coefficients.iter().position(|c| !c.is_finite()) {
-            return Err(HarmonicFunctionError::BadData { entry, value: coefficients[entry] });
-        }
-        let given = |e: usize, k: usize, f: usize| coefficients[(COEFFICIENTS * e + 2 + k) * functions + f];
-        let row = |i: usize| -> Vec<f64> {
-            let (own, t) = (i / 2, COLLOCATION[i % 2]);
-            let mut row: Vec<f64> =
-                (0..functions).map(|f| given(own, 0, f) + t * (given(own, 1, f) + t * given(own, 2, f))).collect();
-            at_collocation(elements, i, |e, _, double| {
-                for (f, sum) in row.iter_mut().enumerate() {
-                    *sum += (0..3).map(|k| double[k] * given(e, k, f)).sum::<f64>();
-                }
-            });
-            row
-        };
-        let rows: Vec<Vec<f64>> = (0..2 * count).into_par_iter().map(row).collect();
+        let count = self.elements.all.len();
+        let mut coefficients = sampled(&self.elements, functions, values)?;
+        let rows: Vec<Vec<f64>> = (0..2 * count)
+            .into_par_iter()
+            .map(|i| right_side_of_sampled(&self.elements, i, functions, &coefficients))
+            .collect();
         let flux = self.factor.solve(&Mat::from_fn(2 * count, functions, |i, f| rows[i][f]));
         for (e, block) in coefficients.chunks_exact_mut(COEFFICIENTS * functions).enumerate() {
             (0..2 * functions).for_each(|k| block[k] = flux[(2 * e + k / functions, k % functions)]);
         }
-        BoundaryElementFunctions::new(elements.clone(), functions, coefficients, Trace::Sampled)
+        BoundaryElementFunctions::new(self.elements.clone(), functions, coefficients, Trace::Sampled)
     }
+}
+
+/// Normal derivatives that were found and given values, element by element.
+fn coefficients(elements: &Elements, data: &BoundaryData, flux: MatRef<'_, f64>) -> Vec<f64> {
+    let functions = data.functions;
+    let mut coefficients = vec![0.0; COEFFICIENTS * elements.all.len() * functions];
+    for (e, (element, block)) in
+        elements.all.iter().zip(coefficients.chunks_exact_mut(COEFFICIENTS * functions)).enumerate()
+    {
+        let edge = &elements.edges[element.edge];
+        let [middle, half] = element.shares(edge);
+        let going = data.profile.on(middle, half);
+        let [begin, end] = edge.vertices.map(|v| data.at_vertex(v));
+        for f in 0..functions {
+            let rise = end[f] - begin[f];
+            let numbers =
+                [flux[(2 * e, f)], flux[(2 * e + 1, f)], begin[f] + rise * going[0], rise * going[1], rise * going[2]];
+            numbers.into_iter().enumerate().for_each(|(k, x)| block[k * functions + f] = x);
+        }
+    }
+    coefficients
+}
+
+/// Coefficients of the values in each element; those of the normal derivatives are 0.
+fn sampled(
+    elements: &Elements,
+    functions: usize,
+    values: impl Fn(Point2, &mut [f64]),
+) -> Result<Vec<f64>, HarmonicFunctionError> {
+    let mut coefficients = vec![0.0; COEFFICIENTS * elements.all.len() * functions];
+    let mut samples = [0; 3].map(|_| vec![0.0; functions]);
+    for (element, block) in elements.all.iter().zip(coefficients.chunks_exact_mut(COEFFICIENTS * functions)) {
+        let edge = &elements.edges[element.edge];
+        for (sample, t) in samples.iter_mut().zip([-1.0, 0.0, 1.0]) {
+            let point = edge.point(element.from_end, element.middle + t * element.half);
+            values(point.map(|x| x / elements.scale), sample);
+        }
+        let [begin, middle, end] = &samples;
+        for f in 0..functions {
+            block[2 * functions + f] = middle[f];
+            block[3 * functions + f] = 0.5 * (end[f] - begin[f]);
+            block[4 * functions + f] = 0.5 * (begin[f] + end[f]) - middle[f];
+        }
+    }
+    match coefficients.iter().position(|c| !c.is_finite()) {
+        Some(entry) => Err(HarmonicFunctionError::BadData { entry, value: coefficients[entry] }),
+        None => Ok(coefficients),
+    }
+}
+
+/// The value and the double layer of all values at collocation point `i`, by the coefficients in each element (#F).
+fn right_side_of_sampled(elements: &Elements, i: usize, functions: usize, coefficients: &[f64]) -> Vec<f64> {
+    let given = |e: usize, k: usize, f: usize| coefficients[(COEFFICIENTS * e + 2 + k) * functions + f];
+    let (own, t) = (i / 2, COLLOCATION[i % 2]);
+    let mut row: Vec<f64> =
+        (0..functions).map(|f| given(own, 0, f) + t * (given(own, 1, f) + t * given(own, 2, f))).collect();
+    at_collocation(elements, i, |e, _, double| {
+        for (f, sum) in row.iter_mut().enumerate() {
+            *sum += (0..3).map(|k| double[k] * given(e, k, f)).sum::<f64>();
+        }
+    });
+    row
 }
 
 /// Calls with the number of every element and its integrals (single and double layer) at collocation point `i`.
 pub(super) fn at_collocation(elements: &Elements, i: usize, mut visit: impl FnMut(usize, [f64; 2], [f64; 3])) {
-    let own = &elements.all[i / 2];
-    let edge = &elements.edges[own.edge];
-    let place = own.middle + own.half * COLLOCATION[i % 2];
-    let (point, sight) = (edge.point(own.from_end, place), edge.sight_of_own(own.from_end, place));
-    elements.for_each(point, Some((own.edge, sight)), |e, element, z| {
-        let found = moments(z, element.half);
+    elements.for_each(elements.place(i / 2, COLLOCATION[i % 2]), |e, element, local| {
+        let found = moments(local, element.half);
         visit(e, found.single, found.double);
     });
 }

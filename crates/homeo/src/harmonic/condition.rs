@@ -21,6 +21,14 @@ impl Profile {
         }
     }
 
+    /// The share at which values have gone so far: the other way round.
+    pub(super) fn share_of(self, gone: f64) -> f64 {
+        match self {
+            Self::Linear => gone,
+            Self::Quadratic => gone.sqrt(),
+        }
+    }
+
     /// The same on an element from `middle - half` to `middle + half`: coefficients of 1, `t` and `t^2`.
     pub(super) fn on(self, middle: f64, half: f64) -> [f64; 3] {
         match self {

@@ -4,6 +4,7 @@ use faer::c64;
 use homeo_core::planar::{PlanarDomain, Point2};
 
 use super::HarmonicFunctionError;
+use super::kernel::Local;
 
 /// How edges are divided into elements.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +29,7 @@ impl ElementParams {
         let bad = |name, value, range| Err(HarmonicFunctionError::BadParameter { name, value, range });
         match self {
             Self { per_half_edge: 0, .. } => bad("per_half_edge", 0.0, "1 or more"),
-            Self { longest, .. } if !(*longest > 0.0) => bad("longest", *longest, "a number above 0"),
+            Self { longest, .. } if *longest <= 0.0 || longest.is_nan() => bad("longest", *longest, "a number above 0"),
             Self { grading, .. } if !(1.0..=16.0).contains(grading) => bad("grading", *grading, "1 to 16"),
             _ => Ok(()),
         }
@@ -57,6 +58,8 @@ pub(super) struct Element {
     pub from_end: usize,
     /// Where the middle lies along the edge, negative from the second end.
     pub middle: f64,
+    /// Where both ends lie, and from which end of the edge that is counted: elements that meet agree on it to the last bit.
+    ends: [(usize, f64); 2],
     pub half: f64,
     /// The element after it in its ring.
     pub next: usize,
@@ -70,8 +73,9 @@ impl Element {
     }
 
     /// A point as it sees it.
-    pub fn local(&self, sight: &Sight) -> c64 {
-        c64::new((sight.along[self.from_end] - self.middle) / self.half, sight.height / self.half)
+    pub fn local(&self, sight: &Sight) -> Local {
+        let [left, right] = self.ends.map(|(end, place)| (sight.along[end] - place) / self.half);
+        Local { left, right, height: sight.height / self.half }
     }
 }
 
@@ -83,25 +87,42 @@ pub(super) struct Sight {
 }
 
 impl Edge {
-    /// How the edge sees a scaled point. The height has the exact sign; it is never `-0`.
-    pub fn sight(&self, point: Point2) -> Sight {
-        let along =
-            self.ends.map(|end| (point[0] - end[0]) * self.direction.re + (point[1] - end[1]) * self.direction.im);
+    /// How the edge sees a scaled point that is a step away from another: what is known of both to the last digit stays so
+    /// beside corners. Without a step the height has the exact sign; it is never `-0`.
+    pub fn sight(&self, Place { base, step, .. }: Place) -> Sight {
+        let (d, [x, y]) = (self.direction, step);
+        let along = self.ends.map(|end| (base[0] - end[0]) * d.re + (base[1] - end[1]) * d.im + (x * d.re + y * d.im));
         let coord = |p: Point2| robust::Coord { x: p[0], y: p[1] };
-        let height = robust::orient2d(coord(self.ends[0]), coord(self.ends[1]), coord(point)) / self.length;
-        Sight { along, height: height + 0.0 }
+        let height = robust::orient2d(coord(self.ends[0]), coord(self.ends[1]), coord(base)) / self.length;
+        Sight { along, height: height + (d.re * y - d.im * x) + 0.0 }
     }
 
     /// How the edge sees its own point, so far from one end.
-    pub fn sight_of_own(&self, from_end: usize, place: f64) -> Sight {
-        let other = if from_end == 0 { place - self.length } else { place + self.length };
-        Sight { along: if from_end == 0 { [place, other] } else { [other, place] }, height: 0.0 }
+    fn sight_of_own(&self, from_end: usize, along: f64) -> Sight {
+        let other = if from_end == 0 { along - self.length } else { along + self.length };
+        Sight { along: if from_end == 0 { [along, other] } else { [other, along] }, height: 0.0 }
     }
 
-    /// Where its own point lies, so far from one end.
-    pub fn point(&self, from_end: usize, place: f64) -> Point2 {
+    /// Where its own point lies, so far from one end, rounded.
+    pub fn point(&self, from_end: usize, along: f64) -> Point2 {
         let end = self.ends[from_end];
-        [end[0] + place * self.direction.re, end[1] + place * self.direction.im]
+        [end[0] + along * self.direction.re, end[1] + along * self.direction.im]
+    }
+}
+
+/// A scaled point: a step away from another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    base: Point2,
+    step: Point2,
+    /// The edge on which it lies, the end from which the step goes, and how far.
+    own: Option<(usize, usize, f64)>,
+}
+
+impl Place {
+    /// A point that is known itself.
+    pub fn new(point: Point2) -> Self {
+        Self { base: point, step: [0.0; 2], own: None }
     }
 }
 
@@ -152,9 +173,15 @@ impl Elements {
         let node = |j: usize| 0.5 * length * (j as f64 / n as f64).powf(params.grading);
         let (edge, begin) = (self.edges.len(), self.all.len());
         let element = |from_end: usize, j: usize| {
-            let middle = 0.5 * (node(j) + node(j + 1));
-            let signed = if from_end == 0 { middle } else { -middle };
-            Element { edge, from_end, middle: signed, half: 0.5 * (node(j + 1) - node(j)), next: 0 }
+            let (near, far) = (node(j), node(j + 1));
+            let (middle, half) = (0.5 * (near + far), 0.5 * (far - near));
+            let ends = match from_end {
+                0 => [(0, near), (0, far)],
+                _ if j + 1 == n => [(0, far), (1, -near)],
+                _ => [(1, -far), (1, -near)],
+            };
+            let middle = if from_end == 0 { middle } else { -middle };
+            Element { edge, from_end, middle, ends, half, next: 0 }
         };
         self.all.extend((0..n).map(|j| element(0, j)).chain((0..n).rev().map(|j| element(1, j))));
         let direction = c64::new(x / length, y / length);
@@ -175,19 +202,27 @@ impl Elements {
     /// The edge on which a scaled point of the closed domain lies, and at which share of it.
     pub fn edge_at(&self, point: Point2) -> Option<(usize, f64)> {
         self.edges.iter().enumerate().find_map(|(i, edge)| {
-            let Sight { along: [from, to], height } = edge.sight(point);
+            let Sight { along: [from, to], height } = edge.sight(Place::new(point));
             let share = if from < -to { from / edge.length } else { 1.0 + to / edge.length };
             (height == 0.0 && from >= 0.0 && to <= 0.0).then_some((i, share.clamp(0.0, 1.0)))
         })
     }
 
-    /// Calls with the number of each element and the point in its frame. A point known to be on an edge (its number and
-    /// how that edge sees it) is not rounded off it.
-    pub fn for_each(&self, point: Point2, own: Option<(usize, Sight)>, mut visit: impl FnMut(usize, &Element, c64)) {
+    /// A point of an element, by its number in the element's frame.
+    pub fn place(&self, element: usize, t: f64) -> Place {
+        let Element { edge, from_end, middle, half, .. } = self.all[element];
+        let (own, along) = (&self.edges[edge], middle + t * half);
+        let step = [along * own.direction.re, along * own.direction.im];
+        Place { base: own.ends[from_end], step, own: Some((edge, from_end, along)) }
+    }
+
+    /// Calls with the number of each element and the point in its frame. A point known to be on an edge is not rounded off
+    /// it.
+    pub fn for_each(&self, place: Place, mut visit: impl FnMut(usize, &Element, Local)) {
         for (i, edge) in self.edges.iter().enumerate() {
-            let sight = match own {
-                Some((own, sight)) if own == i => sight,
-                _ => edge.sight(point),
+            let sight = match place.own {
+                Some((own, from_end, along)) if own == i => edge.sight_of_own(from_end, along),
+                _ => edge.sight(place),
             };
             for e in edge.elements.clone() {
                 visit(e, &self.all[e], self.all[e].local(&sight));

@@ -8,7 +8,7 @@ use homeo_core::planar::{PlanarDomain, Point2};
 use rayon::prelude::*;
 
 use super::condition::BoundaryData;
-use super::elements::{Elements, Sight};
+use super::elements::{Elements, Place};
 use super::kernel::{cauchy, moments};
 use super::{HarmonicFunctionError, HarmonicFunctions, check_length};
 
@@ -67,6 +67,11 @@ impl BoundaryElementFunctions {
         &self.elements.domain
     }
 
+    /// The edge on which a point of the closed domain lies, exactly, and at which share of it.
+    pub(super) fn edge_of(&self, point: Point2) -> Result<Option<(usize, f64)>, HarmonicFunctionError> {
+        Ok(self.elements.edge_at(self.elements.scaled(point)?))
+    }
+
     /// How many elements there are.
     pub fn element_count(&self) -> usize {
         self.elements.all.len()
@@ -79,13 +84,9 @@ impl BoundaryElementFunctions {
     /// conditions it says nothing about the error that comes from edges without given values.
     pub fn boundary_defect(&self) -> f64 {
         let of_element = |e: usize| {
-            let element = &self.elements.all[e];
-            let edge = &self.elements.edges[element.edge];
             let (mut values, mut worst) = (vec![0.0; self.functions], 0.0f64);
             for t in DEFECT_POINTS {
-                let place = element.middle + t * element.half;
-                let own = Some((element.edge, edge.sight_of_own(element.from_end, place)));
-                self.layers(edge.point(element.from_end, place), own, &mut values);
+                self.layers(self.elements.place(e, t), &mut values);
                 for (f, value) in values.iter().enumerate() {
                     let [a, b, c] = [2, 3, 4].map(|k| self.coefficient(e, k)[f]);
                     worst = worst.max((value - (a + t * (b + t * c))).abs());
@@ -110,11 +111,11 @@ impl BoundaryElementFunctions {
         &self.coefficients[begin..begin + self.functions]
     }
 
-    /// The sum of all layers at a scaled point.
-    fn layers(&self, point: Point2, own: Option<(usize, Sight)>, values: &mut [f64]) {
+    /// The sum of all layers.
+    fn layers(&self, place: Place, values: &mut [f64]) {
         values.fill(0.0);
-        self.elements.for_each(point, own, |e, element, z| {
-            let found = moments(z, element.half);
+        self.elements.for_each(place, |e, element, local| {
+            let found = moments(local, element.half);
             let [a, b, c] = found.double;
             for (which, moment) in [found.single[0], found.single[1], -a, -b, -c].into_iter().enumerate() {
                 values.iter_mut().zip(self.coefficient(e, which)).for_each(|(sum, x)| *sum += moment * x);
@@ -152,8 +153,8 @@ impl BoundaryElementFunctions {
     fn slopes(&self, point: Point2, gradients: &mut [Point2]) {
         gradients.fill([0.0; 2]);
         let jumps = matches!(self.trace, Trace::Found);
-        self.elements.for_each(point, None, |e, element, z| {
-            let [zeroth, first, _] = cauchy(z);
+        self.elements.for_each(Place::new(point), |e, element, local| {
+            let [zeroth, first, _] = cauchy(local);
             let direction = self.elements.edges[element.edge].direction.conj();
             let single = direction * (-1.0 / TAU);
             let double = direction * c64::new(0.0, 1.0 / (TAU * element.half));
@@ -165,7 +166,7 @@ impl BoundaryElementFunctions {
                 let of = |e: usize, k: usize, f: usize| self.coefficient(e, k)[f];
                 let end = |e: usize, t: f64, f: usize| of(e, 2, f) + t * (of(e, 3, f) + t * of(e, 4, f));
                 let jump = |f: usize| end(element.next, -1.0, f) - end(e, 1.0, f);
-                add(gradients, double / (z - 1.0), (0..self.functions).map(jump));
+                add(gradients, double / c64::new(local.right, local.height), (0..self.functions).map(jump));
             }
         });
     }
@@ -186,7 +187,7 @@ impl HarmonicFunctions for BoundaryElementFunctions {
         let scaled = self.elements.scaled(point)?;
         match self.elements.edge_at(scaled) {
             Some((edge, share)) => self.on_edge(edge, share, values),
-            None => self.layers(scaled, None, values),
+            None => self.layers(Place::new(scaled), values),
         }
         Ok(())
     }

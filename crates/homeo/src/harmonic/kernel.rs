@@ -24,8 +24,24 @@ pub(super) struct Moments {
     pub double: [f64; 3],
 }
 
-/// `C_0`, `C_1` and `C_2` at a point; `z.im` is not `-0`.
-pub(super) fn cauchy(z: c64) -> [c64; 3] {
+/// A point as an element sees it, in half lengths: how far ahead of the element's beginning and of its end it is, and how
+/// far above, which is not `-0`. Beside either end these are small and known to their last digits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Local {
+    pub left: f64,
+    pub right: f64,
+    pub height: f64,
+}
+
+impl Local {
+    fn z(self) -> c64 {
+        c64::new(0.5 * (self.left + self.right), self.height)
+    }
+}
+
+/// `C_0`, `C_1` and `C_2` at a point.
+pub(super) fn cauchy(local: Local) -> [c64; 3] {
+    let z = local.z();
     let squared = z.re * z.re + z.im * z.im;
     if squared > FAR {
         let inverse = c64::new(z.re / squared, -z.im / squared);
@@ -33,7 +49,7 @@ pub(super) fn cauchy(z: c64) -> [c64; 3] {
         let sum = (1..=TERMS).rev().fold(c64::new(0.0, 0.0), |sum, k| w * (sum + 2.0 / (2 * k + 1) as f64));
         return [(sum + 2.0) * inverse, sum, sum * z];
     }
-    let (left, right) = (z.re + 1.0, z.re - 1.0);
+    let Local { left, right, .. } = local;
     let height = z.im * z.im;
     let modulus = 0.5 * ((left * left + height) / (right * right + height)).ln();
     let argument = f64::atan2(-2.0 * z.im, left * right + height);
@@ -43,10 +59,10 @@ pub(super) fn cauchy(z: c64) -> [c64; 3] {
 }
 
 /// All integrals, over an element of a half length.
-pub(super) fn moments(z: c64, half: f64) -> Moments {
-    let [zeroth, first, second] = cauchy(z);
-    let height = z.im * z.im;
-    let (left, right) = ((z.re + 1.0) * (z.re + 1.0) + height, (z.re - 1.0) * (z.re - 1.0) + height);
+pub(super) fn moments(local: Local, half: f64) -> Moments {
+    let [zeroth, first, second] = cauchy(local);
+    let height = local.height * local.height;
+    let (left, right) = (local.left * local.left + height, local.right * local.right + height);
     let logarithm = 0.5 * (left * right).ln() + 2.0 * half.ln();
     Moments {
         single: [-half * (logarithm + first.re) / TAU, 0.5 * half * (zeroth.re - second.re) / TAU],
@@ -57,6 +73,10 @@ pub(super) fn moments(z: c64, half: f64) -> Moments {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn at(z: c64) -> Local {
+        Local { left: z.re + 1.0, right: z.re - 1.0, height: z.im }
+    }
 
     /// Midpoint sums of the definitions.
     fn by_sums(z: c64, half: f64) -> Moments {
@@ -86,9 +106,9 @@ mod tests {
         for (x, y) in [(0.3, 0.5), (-0.7, 0.2), (1.5, 1.0), (5.9, 0.8), (6.1, 0.8), (-30.0, 40.0), (0.2, -0.6)] {
             let z = c64::new(x, y);
             let truth = by_sums(z, 0.37);
-            assert!(miss(&moments(z, 0.37), &truth) < 1e-9, "{x} {y}: {:?} {truth:?}", moments(z, 0.37));
+            assert!(miss(&moments(at(z), 0.37), &truth) < 1e-9, "{x} {y}: {:?} {truth:?}", moments(at(z), 0.37));
             // The control: the kernel of the wrong sign, and the point mirrored.
-            assert!(miss(&moments(-z, 0.37), &truth) > 1e-5);
+            assert!(miss(&moments(at(-z), 0.37), &truth) > 1e-5);
             tried += 1;
         }
         assert_eq!(tried, 7);
@@ -97,9 +117,9 @@ mod tests {
     #[test]
     fn limits_from_above_are_those_of_the_element() {
         for x in [-0.99, -0.3, 0.0, 0.6] {
-            let (on, above) = (moments(c64::new(x, 0.0), 0.5), moments(c64::new(x, 1e-13), 0.5));
+            let (on, above) = (moments(at(c64::new(x, 0.0)), 0.5), moments(at(c64::new(x, 1e-13)), 0.5));
             assert!(miss(&on, &above) < 1e-11 && (on.double[0] + 0.5).abs() < 1e-15);
-            assert!(miss(&on, &moments(c64::new(x, -1e-13), 0.5)) > 0.1);
+            assert!(miss(&on, &moments(at(c64::new(x, -1e-13)), 0.5)) > 0.1);
         }
     }
 }

@@ -9,7 +9,9 @@
 //! All implement [`HarmonicFunctions`]. None is exact: the difference of two harmonic functions is largest on the
 //! boundary, so that what the first two miss there bounds what they miss inside.
 //!
-//! Source: Schneider 2017, sections 5.1 and 5.4. Differences: boundary elements are integrated in closed form, so that
+//! [`SmoothHarmonicMap`] composes two pairs of such functions to a smooth map between polygons, which is not certified.
+//!
+//! Source: Schneider 2017, sections 5.1, 5.2 and 5.4. Differences: boundary elements are integrated in closed form, so that
 //! nothing breaks down near the boundary; normal derivatives are linear in each element and may jump between elements, as
 //! they do at corners; elements get shorter towards corners.
 
@@ -17,8 +19,13 @@ mod boundary_element;
 mod condition;
 mod elements;
 mod evaluate;
+mod finite_element;
+mod fundamental;
 mod kernel;
 mod mixed;
+mod smooth_map;
+#[cfg(test)]
+mod smooth_tests;
 #[cfg(test)]
 mod tests;
 
@@ -26,7 +33,10 @@ pub use boundary_element::BoundaryElements;
 pub use condition::{BoundaryData, EdgeCondition, Profile};
 pub use elements::ElementParams;
 pub use evaluate::BoundaryElementFunctions;
+pub use finite_element::FiniteElements;
+pub use fundamental::{FundamentalParams, FundamentalSolutions};
 pub use mixed::solve_mixed;
+pub use smooth_map::{SmoothHarmonicMap, SmoothImage, SmoothMapError, SmoothParams, SmoothVerdict};
 
 use homeo_core::planar::Point2;
 

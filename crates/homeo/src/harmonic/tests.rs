@@ -250,3 +250,90 @@ fn bad_questions_are_refused_by_name() {
     assert_eq!(at_vertex, Err(HarmonicFunctionError::NoGradient { point: [0.0, 0.0] }));
     assert_eq!(values, [1.0, 0.0, 0.0, 0.0, 0.0]);
 }
+
+/// Three methods that have nothing in common but the data.
+#[test]
+fn methods_agree_and_come_closer() {
+    for domain in [dart(), ring()] {
+        let n = domain.vertex_count();
+        let data = BoundaryData::hats(n);
+        let params = ElementParams { per_half_edge: 12, ..ElementParams::default() };
+        let truth = BoundaryElements::new(&domain, &params).unwrap().solve(&data).unwrap();
+        assert!(truth.boundary_defect() < 1e-3);
+        let miss = |other: &dyn HarmonicFunctions| {
+            let (mut a, mut b, mut worst) = (vec![0.0; n], vec![0.0; n], 0.0f64);
+            for point in inside(&domain, 15) {
+                truth.values_into(point, &mut a).unwrap();
+                other.values_into(point, &mut b).unwrap();
+                a.iter().zip(&b).for_each(|(a, b)| worst = worst.max((a - b).abs()));
+            }
+            worst
+        };
+        let finite = [500, 8_000].map(|triangles| miss(&FiniteElements::new(&domain, &data, triangles).unwrap()));
+        assert!(finite[1] < 2e-2 && finite[0] > 3.0 * finite[1], "{finite:?}");
+        let sited = [50, 300].map(|sites| {
+            let params = FundamentalParams { sites, ..FundamentalParams::default() };
+            miss(&FundamentalSolutions::new(&domain, &data, &params).unwrap())
+        });
+        assert!(sited[1] < 2e-2 && sited[0] > 2.0 * sited[1], "{sited:?}");
+        let coarse = ElementParams { per_half_edge: 2, longest: f64::INFINITY, ..ElementParams::default() };
+        let coarse = miss(&BoundaryElements::new(&domain, &coarse).unwrap().solve(&data).unwrap());
+        let fine = miss(&BoundaryElements::new(&domain, &ElementParams::default()).unwrap().solve(&data).unwrap());
+        assert!(fine < 1e-3 && coarse > 5.0 * fine, "{coarse:e} {fine:e}");
+        // The control: other data.
+        let mut other = data.clone();
+        other.values.rotate_left(1);
+        assert!(miss(&FiniteElements::new(&domain, &other, 500).unwrap()) > 0.1);
+    }
+}
+
+#[test]
+fn gradients_of_fundamental_solutions_are_those_of_the_values() {
+    let domain = dart();
+    let functions = FundamentalSolutions::new(&domain, &BoundaryData::hats(5), &FundamentalParams::default()).unwrap();
+    let (mut values, mut gradients, mut moved) = ([0.0; 5], [[0.0; 2]; 5], [0.0; 5]);
+    for point in inside(&domain, 6) {
+        for axis in 0..2 {
+            let mut there = point;
+            there[axis] += 1e-7;
+            functions.values_into(there, &mut moved).unwrap();
+            functions.gradients_into(point, &mut values, &mut gradients).unwrap();
+            for f in 0..5 {
+                let slope = (moved[f] - values[f]) / 1e-7;
+                assert!((slope - gradients[f][axis]).abs() < 1e-4, "{point:?} {f} {slope} {:?}", gradients[f]);
+            }
+        }
+    }
+    let bad = FundamentalParams { nodes_per_site: 1, ..FundamentalParams::default() };
+    let error = FundamentalSolutions::new(&domain, &BoundaryData::hats(5), &bad).err();
+    assert!(matches!(error, Some(HarmonicFunctionError::BadParameter { name: "nodes_per_site", .. })));
+}
+
+/// Where elements meet, beside the edge: angles of both add up, however the point is rounded.
+#[test]
+fn beside_nodes_functions_sum_to_one() {
+    let mut tried = 0;
+    for domain in [dart(), ring()] {
+        let n = domain.vertex_count();
+        let params = ElementParams { per_half_edge: 3, longest: f64::INFINITY, grading: 2.0 };
+        let functions = BoundaryElements::new(&domain, &params).unwrap().solve(&BoundaryData::hats(n)).unwrap();
+        let (defect, mut values) = (functions.boundary_defect(), vec![0.0; n]);
+        let mut first = 0;
+        for ring in domain.rings() {
+            for i in 0..ring.len() {
+                let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
+                for share in [0.5 / 9.0, 2.0 / 9.0, 0.5, 1.0 - 2.0 / 9.0, 1.0 - 0.5 / 9.0] {
+                    let point = [0, 1].map(|k| a[k] + share * (b[k] - a[k]));
+                    if functions.values_into(point, &mut values).is_err() {
+                        continue;
+                    }
+                    assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-13, "{point:?} {values:?}");
+                    assert!((values[first + i] - 1.0 + share).abs() < 2.0 * defect + 1e-12, "{point:?} {values:?}");
+                    tried += 1;
+                }
+            }
+            first += ring.len();
+        }
+    }
+    assert!(tried > 20, "{tried}");
+}

@@ -118,7 +118,7 @@ impl Problem<'_> {
                 step *= 0.5;
             }
             step *= 2.0;
-            if !(before - state.energy > LEAST_GAIN * before) {
+            if before - state.energy <= LEAST_GAIN * before || !before.is_finite() {
                 break;
             }
         }

@@ -40,7 +40,7 @@ impl Distortion {
     pub fn of(self, jacobian: Matrix) -> f64 {
         let [[a, b], [c, d]] = jacobian;
         let determinant = a * d - b * c;
-        if !(determinant > 0.0) {
+        if determinant <= 0.0 || determinant.is_nan() {
             return f64::INFINITY;
         }
         match self {
