@@ -98,7 +98,7 @@ impl BoundaryElements {
             .map(|i| right_side_of_sampled(&self.elements, i, functions, &coefficients))
             .collect();
         let flux = self.factor.solve(&Mat::from_fn(2 * count, functions, |i, f| rows[i][f]));
-        for (e, block) in coefficients.chunks_exact_mut(COEFFICIENTS * functions).enumerate() {
+        for (e, block) in coefficients.chunks_exact_mut(COEFFICIENTS * functions.max(1)).enumerate() {
             (0..2 * functions).for_each(|k| block[k] = flux[(2 * e + k / functions, k % functions)]);
         }
         BoundaryElementFunctions::new(self.elements.clone(), functions, coefficients, Trace::Sampled)
@@ -110,7 +110,7 @@ fn coefficients(elements: &Elements, data: &BoundaryData, flux: MatRef<'_, f64>)
     let functions = data.functions;
     let mut coefficients = vec![0.0; COEFFICIENTS * elements.all.len() * functions];
     for (e, (element, block)) in
-        elements.all.iter().zip(coefficients.chunks_exact_mut(COEFFICIENTS * functions)).enumerate()
+        elements.all.iter().zip(coefficients.chunks_exact_mut(COEFFICIENTS * functions.max(1))).enumerate()
     {
         let edge = &elements.edges[element.edge];
         let [middle, half] = element.shares(edge);
@@ -134,7 +134,7 @@ fn sampled(
 ) -> Result<Vec<f64>, HarmonicFunctionError> {
     let mut coefficients = vec![0.0; COEFFICIENTS * elements.all.len() * functions];
     let mut samples = [0; 3].map(|_| vec![0.0; functions]);
-    for (element, block) in elements.all.iter().zip(coefficients.chunks_exact_mut(COEFFICIENTS * functions)) {
+    for (element, block) in elements.all.iter().zip(coefficients.chunks_exact_mut(COEFFICIENTS * functions.max(1))) {
         let edge = &elements.edges[element.edge];
         for (sample, t) in samples.iter_mut().zip([-1.0, 0.0, 1.0]) {
             let point = edge.point(element.from_end, element.middle + t * element.half);

@@ -242,6 +242,8 @@ fn bad_questions_are_refused_by_name() {
     assert!(matches!(bad, Err(HarmonicFunctionError::BadData { entry: 1, .. })));
     let elements = BoundaryElements::new(&domain, &params(1, 1.0)).unwrap();
     assert!(matches!(elements.solve(&BoundaryData::hats(4)), Err(HarmonicFunctionError::WrongLength { .. })));
+    let none = elements.solve(&BoundaryData::new::<0>(&[], Profile::Linear).unwrap()).unwrap();
+    assert_eq!(none.values_into([1.0, 0.4], &mut []), Ok(()));
     let functions = elements.solve(&BoundaryData::hats(5)).unwrap();
     let mut values = [0.0; 5];
     let outside = functions.values_into([1.1, 1.0], &mut values);
