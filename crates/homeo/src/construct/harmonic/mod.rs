@@ -29,8 +29,8 @@ pub enum MiddleShape {
     #[default]
     AveragedLengths,
     /// Begun with averaged lengths, then moved to where the map distorts less (section 5.3): its mean distortion, in the
-    /// sense of [`HarmonicMap::distortion`], is never larger than with averaged lengths. Domains with a hole: as averaged
-    /// lengths.
+    /// sense of [`HarmonicMap::distortion`] and to rounding, is never larger than with averaged lengths, unless cotangent
+    /// weights fail at the end and equal ones are taken. Domains with a hole: as averaged lengths.
     Optimized(Distortion),
 }
 
