@@ -631,6 +631,8 @@ pub enum MiddleName {
     Lengths,
     /// A regular polygon
     Regular,
+    /// Begun as lengths, then moved so that the map keeps angles better; with a hole as lengths
+    Optimized,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -34,6 +34,18 @@ fn points_move_and_the_map_is_checked_again() {
 }
 
 #[test]
+fn optimized_middles_are_certified_too() {
+    let folder = folder();
+    let line = "warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json --triangles 1000";
+    for middle in ["optimized", "lengths"] {
+        let report = folder.line(&format!("{line} --middle {middle} -o {middle}.csv --map {middle}.homeo --json"));
+        assert_eq!(report.expect(0).json()["certificate"]["holds"], true);
+        folder.line(&format!("verify {middle}.homeo --source testdata/polygons/star_to_circle.json")).expect(0);
+    }
+    assert_ne!(folder.text("optimized.csv"), folder.text("lengths.csv"));
+}
+
+#[test]
 fn a_picture_keeps_its_corners_and_loses_what_is_outside() {
     let folder = folder();
     let run = format!("warp testdata/images/checker.png {PIXELS} -o warped.png --field field.npy --json");

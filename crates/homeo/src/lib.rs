@@ -3,7 +3,7 @@
 //! The folders follow the data: a mesh comes in ([`input`]), is refined where a construction needs it
 //! ([`refine`]), a construction finds the map ([`construct`]), the map is evaluated both ways ([`map`]),
 //! compared and used ([`overlay`], [`transfer`], [`warp`]), written with its certificate ([`certificate`]) and shown ([`export`]).
-//! Shapes between two polygons or curves are in [`shape`].
+//! Shapes between two polygons or curves are in [`shape`], harmonic functions of planar domains in [`harmonic`].
 //! What is proved about a map is re-established by the separate checker `homeo-verify`.
 
 pub mod certificate;
@@ -11,6 +11,7 @@ pub mod composite;
 pub mod construct;
 pub mod coordinates;
 pub mod export;
+pub mod harmonic;
 pub mod input;
 pub mod linear;
 pub mod map;

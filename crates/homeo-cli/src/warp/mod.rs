@@ -10,7 +10,7 @@ use std::path::Path;
 
 use homeo::certificate::{PlanarMap, Provenance, write_planar};
 use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
-use homeo::map::PlanarBijection;
+use homeo::map::{Distortion, PlanarBijection};
 use homeo::progress::Progress;
 use homeo::warp::{Filter, Placement, backward_field};
 use homeo_core::planar::PlanarDomain;
@@ -85,9 +85,9 @@ fn make(session: &Session, options: &WarpArgs) -> Result<Made> {
     }
     let map =
         harmonic_map(&pair, params(&options.polygons, turn), session).map_err(|error| explain(session, &error))?;
-    let middle = if options.polygons.middle == MiddleName::Regular { "regular" } else { "lengths" };
     let made = json!({
-        "method": "harmonic", "triangles": options.polygons.triangles, "turn_degrees": turn, "middle": middle,
+        "method": "harmonic", "triangles": options.polygons.triangles, "turn_degrees": turn,
+        "middle": name(options.polygons.middle),
     });
     Ok(piecewise_linear(map.into(), made))
 }
@@ -144,6 +144,15 @@ fn shape(name: MiddleName) -> MiddleShape {
     match name {
         MiddleName::Lengths => MiddleShape::AveragedLengths,
         MiddleName::Regular => MiddleShape::Regular,
+        MiddleName::Optimized => MiddleShape::Optimized(Distortion::Conformal),
+    }
+}
+
+fn name(middle: MiddleName) -> &'static str {
+    match middle {
+        MiddleName::Lengths => "lengths",
+        MiddleName::Regular => "regular",
+        MiddleName::Optimized => "optimized",
     }
 }
 

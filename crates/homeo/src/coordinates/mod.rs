@@ -5,6 +5,7 @@
 //! | [`MeanValue`] | the plane | yes |
 //! | [`Wachspress`], [`DiscreteHarmonic`], [`ThreePoint`] | strictly convex polygons | no |
 //! | [`PositiveMeanValue`], [`MaximumEntropy`] | the closed domain | yes |
+//! | [`HarmonicCoordinates`] (approximate: see its page) | the closed domain | yes |
 //! | [`Cauchy`], [`Green`] (complex, with normals; their own interface) | inside | yes |
 //! | [`WachspressPolyhedron`] (in space; its own interface) | convex polyhedra | no |
 //!
@@ -25,6 +26,7 @@
 
 mod accurate;
 mod complex;
+mod harmonic;
 mod maximum_entropy;
 mod mean_value;
 mod mean_value_batch;
@@ -40,6 +42,7 @@ mod weighted;
 mod tests;
 
 pub use complex::{Cauchy, Complex, Green};
+pub use harmonic::HarmonicCoordinates;
 pub use maximum_entropy::MaximumEntropy;
 pub use mean_value::MeanValue;
 pub use mean_value_vertex::mean_value_derivative_at_vertex;

@@ -36,7 +36,7 @@ fn shares(rings: [&Vec<Point2>; 2], shape: MiddleShape) -> Vec<f64> {
     let totals = [0, 1].map(|k| lengths[k].iter().sum::<f64>());
     let equal = match shape {
         MiddleShape::Regular => 1.0,
-        MiddleShape::AveragedLengths => EQUAL_PART,
+        MiddleShape::AveragedLengths | MiddleShape::Optimized(_) => EQUAL_PART,
     };
     let part = |i: usize| {
         let average = 0.5 * (lengths[0][i] / totals[0] + lengths[1][i] / totals[1]);

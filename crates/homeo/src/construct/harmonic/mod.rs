@@ -8,15 +8,16 @@ mod flatten;
 mod landmarks;
 mod mesh;
 mod middle;
+mod optimize;
 mod turns;
 
 pub use landmarks::{Landmark, LandmarkError, landmark_map};
 
 use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 
-use crate::map::{Half, HalfParts, HarmonicMap, Middle, SHARE_BITS};
+use crate::map::{BoundaryPoint, Distortion, Half, HalfParts, HarmonicMap, Middle};
 use crate::progress::Progress;
-use flatten::Weights;
+pub(crate) use flatten::{Laplace, Weights};
 
 /// Which convex polygon lies between source and target, or how the rings of the cylinder are divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,6 +28,10 @@ pub enum MiddleShape {
     /// (section 5.3).
     #[default]
     AveragedLengths,
+    /// Begun with averaged lengths, then moved to where the map distorts less (section 5.3): its mean distortion, in the
+    /// sense of [`HarmonicMap::distortion`] and to rounding, is never larger than with averaged lengths, unless cotangent
+    /// weights fail at the end and equal ones are taken. Domains with a hole: as averaged lengths.
+    Optimized(Distortion),
 }
 
 /// What is asked for.
@@ -110,67 +115,105 @@ pub fn harmonic_map(
     }
     progress.stage("prepare");
     let turns = turns::of_pair(pair, params.turn_degrees);
-    let middle = middle::middle(pair, params.middle, turns.ahead);
-    let [source, target] = [(&pair.source, 0, "source"), (&pair.target, turns.of_target, "target")]
-        .map(|(domain, turns, side)| half(domain, &middle, params.triangles, turns, side, progress));
-    Ok(HarmonicMap::new(middle, source?, target?))
+    let mut middle = middle::middle(pair, params.middle, turns.ahead);
+    let is_cylinder = middle.is_cylinder();
+    let triangulate = |domain| Triangulated::new(domain, params.triangles, is_cylinder, progress);
+    let (source, target) = (triangulate(&pair.source)?, triangulate(&pair.target)?);
+    if let (MiddleShape::Optimized(energy), false) = (params.middle, is_cylinder) {
+        progress.stage("optimize");
+        middle = optimize::optimized(&[&source, &target], &middle.rings()[0], energy, progress)?;
+    }
+    progress.stage("harmonic");
+    let source = source.flatten(&middle, 0, "source", progress)?;
+    Ok(HarmonicMap::new(middle.clone(), source, target.flatten(&middle, turns.of_target, "target", progress)?))
 }
 
-/// Triangulates a domain and flattens it; on a cylinder the inner ring is put `turns` turns ahead.
-fn half(
-    domain: &PlanarDomain,
-    middle: &Middle,
-    triangles: usize,
-    turns: i8,
-    side: &'static str,
-    progress: &impl Progress,
-) -> Result<HalfParts, HarmonicError> {
-    let go_on = || if progress.is_cancelled() { Err(HarmonicError::Cancelled) } else { Ok(()) };
-    progress.stage("triangulate");
-    let largest_area = area(domain) / triangles.max(1) as f64;
-    // Triangles with equal sides and this area.
-    let spacing = (largest_area * 4.0 / 3f64.sqrt()).sqrt();
-    let boundary = boundary::boundary_points(domain, spacing, 2 * triangles + 8 * domain.vertex_count() + 2_000);
-    go_on()?;
-    let mut rings: Vec<Vec<Point2>> = vec![Vec::new(); domain.rings().len()];
-    for point in &boundary {
-        let ring = &domain.rings()[point.ring as usize];
-        let (a, b) = (ring[point.edge as usize], ring[(point.edge as usize + 1) % ring.len()]);
-        let share = f64::from(point.share) / f64::from(1 << SHARE_BITS);
-        let there = if point.share == 0 { a } else { [0, 1].map(|x| a[x] * (1.0 - share) + b[x] * share) };
-        rings[point.ring as usize].push(there);
-    }
-    let mut mesh = mesh::triangulate(&rings, largest_area, 10 * (triangles + boundary.len()))?;
-    if middle.is_cylinder() {
-        mesh.split_chords(rings[0].len());
-    }
-    go_on()?;
-    progress.stage("harmonic");
-    let shifts = match middle.is_cylinder() {
-        true => turns::shifts(domain, &mesh, &rings, turns),
-        false => Vec::new(),
-    };
-    let fixed: Vec<Point2> = boundary.iter().map(|point| middle.point(point)).collect();
-    let positions: Vec<Point2> = mesh.boundary.iter().chain(&mesh.inner).copied().collect();
-    let mut first_flipped = 0;
-    for weights in [Weights::Cotangent, Weights::Equal] {
-        go_on()?;
-        let images = flatten::inner_images(&positions, &fixed, &mesh.triangles, &shifts, weights)?;
-        let parts = HalfParts {
-            domain: domain.clone(),
-            boundary: boundary.clone(),
-            inner: mesh.inner.clone(),
-            images,
-            triangles: mesh.triangles.clone(),
-            shifts: shifts.clone(),
-        };
-        match Half::new(parts, middle).into_parts_if_positive(middle) {
-            Ok(parts) => return Ok(parts),
-            Err(triangle) => first_flipped = triangle,
+fn go_on(progress: &impl Progress) -> Result<(), HarmonicError> {
+    if progress.is_cancelled() { Err(HarmonicError::Cancelled) } else { Ok(()) }
+}
+
+/// A domain that is triangulated, not yet flattened.
+pub(crate) struct Triangulated {
+    pub domain: PlanarDomain,
+    /// Vertices on the boundary, which come first.
+    pub boundary: Vec<BoundaryPoint>,
+    /// Where they lie, ring by ring.
+    rings: Vec<Vec<Point2>>,
+    /// Where all vertices lie, rounded.
+    pub positions: Vec<Point2>,
+    mesh: mesh::Mesh,
+}
+
+impl Triangulated {
+    /// About so many triangles, more where the domain is narrow; no edge joins two vertices of one ring if it `is_cylinder`.
+    pub fn new(
+        domain: &PlanarDomain,
+        triangles: usize,
+        is_cylinder: bool,
+        progress: &impl Progress,
+    ) -> Result<Self, HarmonicError> {
+        progress.stage("triangulate");
+        let largest_area = area(domain) / triangles.max(1) as f64;
+        // Triangles with equal sides and this area.
+        let spacing = (largest_area * 4.0 / 3f64.sqrt()).sqrt();
+        let boundary = boundary::boundary_points(domain, spacing, 2 * triangles + 8 * domain.vertex_count() + 2_000);
+        go_on(progress)?;
+        let mut rings: Vec<Vec<Point2>> = vec![Vec::new(); domain.rings().len()];
+        for point in &boundary {
+            let ring = &domain.rings()[point.ring as usize];
+            let (a, b) = (ring[point.edge as usize], ring[(point.edge as usize + 1) % ring.len()]);
+            let share = point.fraction();
+            let there = if point.share == 0 { a } else { [0, 1].map(|x| a[x] * (1.0 - share) + b[x] * share) };
+            rings[point.ring as usize].push(there);
         }
-        log::info!("{side}: triangle {first_flipped} is turned over with {weights:?} weights");
+        let mut mesh = mesh::triangulate(&rings, largest_area, 10 * (triangles + boundary.len()))?;
+        if is_cylinder {
+            mesh.split_chords(rings[0].len());
+        }
+        go_on(progress)?;
+        let positions: Vec<Point2> = mesh.boundary.iter().chain(&mesh.inner).copied().collect();
+        Ok(Self { domain: domain.clone(), boundary, rings, positions, mesh })
     }
-    Err(HarmonicError::Flipped { side, triangle: first_flipped })
+
+    /// Corners of all triangles, counter-clockwise.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.mesh.triangles
+    }
+
+    /// Flattens it; on a cylinder the inner ring is put `turns` turns ahead.
+    fn flatten(
+        self,
+        middle: &Middle,
+        turns: i8,
+        side: &'static str,
+        progress: &impl Progress,
+    ) -> Result<HalfParts, HarmonicError> {
+        let Self { domain, boundary, rings, positions, mesh } = self;
+        let shifts = match middle.is_cylinder() {
+            true => turns::shifts(&domain, &mesh, &rings, turns),
+            false => Vec::new(),
+        };
+        let fixed: Vec<Point2> = boundary.iter().map(|point| middle.point(point)).collect();
+        let mut first_flipped = 0;
+        for weights in [Weights::Cotangent, Weights::Equal] {
+            go_on(progress)?;
+            let images = Laplace::new(&positions, fixed.len(), &mesh.triangles, &shifts, weights)?.solve(&fixed);
+            let parts = HalfParts {
+                domain: domain.clone(),
+                boundary: boundary.clone(),
+                inner: mesh.inner.clone(),
+                images,
+                triangles: mesh.triangles.clone(),
+                shifts: shifts.clone(),
+            };
+            match Half::new(parts, middle).into_parts_if_positive(middle) {
+                Ok(parts) => return Ok(parts),
+                Err(triangle) => first_flipped = triangle,
+            }
+            log::info!("{side}: triangle {first_flipped} is turned over with {weights:?} weights");
+        }
+        Err(HarmonicError::Flipped { side, triangle: first_flipped })
+    }
 }
 
 fn area(domain: &PlanarDomain) -> f64 {

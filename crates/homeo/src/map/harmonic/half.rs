@@ -8,7 +8,7 @@ use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::Sign;
 use homeo_core::spatial::{Aabb, Tree};
 
-use super::middle::{Middle, between, bounds};
+use super::middle::{Middle, SHARE_BITS, between, bounds};
 
 /// A vertex of a triangulation that lies on an edge of the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,13 @@ pub struct BoundaryPoint {
     pub edge: u32,
     /// How far along the edge, in units of `2^-30`: 0 is the edge's first vertex. Below `2^30`.
     pub share: u32,
+}
+
+impl BoundaryPoint {
+    /// How far along the edge, as a number from 0 to below 1.
+    pub(crate) fn fraction(&self) -> f64 {
+        f64::from(self.share) / f64::from(1 << SHARE_BITS)
+    }
 }
 
 /// The numbers that define a half.
@@ -206,7 +213,7 @@ impl Half {
 }
 
 /// Across the edge opposite each corner.
-fn neighbours(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+pub(crate) fn neighbours(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut edges = HashMap::with_capacity(3 * triangles.len());
     for (t, corners) in triangles.iter().enumerate() {
         (0..3).for_each(|k| {

@@ -4,10 +4,13 @@
 //! a flat cylinder if there is a hole. The map goes from the source to the middle and from there back to the target.
 //! `docs/theory/polygons.md` has the theorem.
 
+pub(crate) mod distortion;
 mod half;
 mod middle;
 mod walk;
 
+pub use distortion::{Distortion, DistortionSummary};
+pub(crate) use half::neighbours;
 pub use half::{BoundaryPoint, Half, HalfParts};
 pub use middle::{Middle, SHARE_BITS};
 

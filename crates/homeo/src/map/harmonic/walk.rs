@@ -37,6 +37,11 @@ impl<'m> Walk<'m> {
         })
     }
 
+    /// The triangle in which a point was found.
+    pub fn find(&mut self, point: Point2) -> Option<usize> {
+        self.carry(point).map(|_| self.triangle)
+    }
+
     /// By steps over the edges that have the point on their far side.
     fn step_to(&mut self, point: Point2) -> Option<Point2> {
         for _ in 0..MOST_STEPS {
