@@ -6,7 +6,9 @@ mod maps;
 mod naive;
 mod others;
 mod shapes;
+mod solids;
 mod space;
+mod spatial;
 mod suite;
 
 use homeo_core::planar::PlanarDomain;
