@@ -67,7 +67,7 @@ pub enum Verb {
     Transfer(TransferArgs),
     /// The map of a shell as two meshes with one connectivity
     Pl(PlArgs),
-    /// Warp a picture or points as a polygon moves, and never fold
+    /// Warp a picture or points as a polygon moves, a mesh as a cage moves, and never fold
     Warp(WarpArgs),
     /// The frames between, as a polygon moves with the picture in it
     Morph(MorphArgs),
@@ -478,6 +478,7 @@ pub struct ReportArgs {
 #[command(after_help = "Examples:
   homeo warp testdata/images/checker.png --from testdata/polygons/square.json --to testdata/polygons/arrow.json -o warped.png
   homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo
+  homeo warp testdata/meshes/spot.mesh --from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj -o twisted.vtu
 
 Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is
 {\"source\": ..., \"target\": ...}. Vertices correspond by number. What lies outside the target becomes
@@ -490,9 +491,21 @@ pub struct WarpArgs {
     /// Points and where they go, in place of polygons: a table with the columns x,y,u,v
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["pair", "from"])]
     pub landmarks: Option<PathBuf>,
-    /// The warped picture or points, in a format by its extension
+    /// What has moved, in a format by its extension; a mesh with all its data
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Cages: steps at first [default: 1]
+    #[arg(long, value_name = "N", value_parser = steps)]
+    pub steps: Option<usize>,
+    /// Cages: while the mesh is folded, steps are doubled up to this [default: 64]
+    #[arg(long, value_name = "N", value_parser = steps)]
+    pub most_steps: Option<usize>,
+    /// Cages: how they move in between [default: straight]
+    #[arg(long, value_enum, value_name = "PATH")]
+    pub path: Option<CagePathName>,
+    /// Cages: how the inside follows [default: mean-value]
+    #[arg(long, value_enum, value_name = "METHOD")]
+    pub method: Option<MethodName>,
     /// Keep the map with its certificate
     #[arg(long, value_name = "MAP.homeo")]
     pub map: Option<PathBuf>,
@@ -510,7 +523,7 @@ pub struct PolygonArgs {
     #[arg(long, value_name = "A.json", requires = "to", conflicts_with = "pair")]
     pub from: Option<PathBuf>,
     /// The polygon after it has moved
-    #[arg(long, value_name = "B.json", requires = "from")]
+    #[arg(long, value_name = "B.json")]
     pub to: Option<PathBuf>,
     /// Both in one file
     #[arg(long, value_name = "PAIR.json")]
@@ -594,6 +607,24 @@ pub enum PathName {
     Angles,
 }
 
+/// How a cage becomes another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CagePathName {
+    /// Every vertex on a straight line
+    Straight,
+    /// Triangles turn and stretch evenly: turned parts turn and do not shrink
+    Angles,
+}
+
+/// How the inside follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// By mean value coordinates of cages
+    MeanValue,
+    /// A tetrahedral mesh by the discrete Laplace equation, from its boundary
+    Harmonic,
+}
+
 /// Where polygons lie on a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Coordinates {
@@ -664,6 +695,11 @@ fn positive_seconds(text: &str) -> Result<f64, String> {
 
 fn at_least_one(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|&n| n >= 1).ok_or_else(|| "a whole number from 1 on is needed".to_owned())
+}
+
+fn steps(text: &str) -> Result<usize, String> {
+    let is_sensible = |n: &usize| (1..=100_000).contains(n);
+    text.parse().ok().filter(is_sensible).ok_or_else(|| "a whole number from 1 to 100000 is needed".to_owned())
 }
 
 fn bytes(text: &str) -> Result<u64, String> {

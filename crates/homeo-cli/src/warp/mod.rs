@@ -1,6 +1,8 @@
-//! `homeo warp`: pictures and points move with a polygon, one-to-one.
+//! `homeo warp`: pictures and points move with a polygon, meshes and points in space with a cage, one-to-one.
 
+mod cage;
 mod landmarks;
+mod moved;
 pub mod picture;
 pub mod polygons;
 
@@ -28,6 +30,10 @@ use picture::Picture;
 
 /// Makes the map, proves it and moves what is to be moved.
 pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Result<Answer> {
+    if cage::is_wanted(options) {
+        return cage::run(session, options, outputs);
+    }
+    cage::refuse_options(options)?;
     check_outputs(options)?;
     session.stage("read");
     let input = Input::read(&options.input)?;

@@ -25,11 +25,12 @@ pub enum ExtensionError {
     Solve(#[from] SolveError),
 }
 
-/// Places of all vertices (#V by 3) such that each vertex inside is the mean of its neighbours, weighted by the inverse of
-/// squared distances in `before`; those on the boundary are taken from `after`, of which no other entries are read.
+/// Places of all vertices (#V by 3) such that each vertex inside moves by the mean of the displacements of its neighbours,
+/// weighted by the inverse of squared distances in `before`; places on the boundary are taken from `after`, of which no
+/// other entries are read.
 ///
-/// The discrete maximum principle holds, so vertices stay in the convex hull of the boundary. In space that does not make
-/// the map injective, not even onto convex targets: ask [`judge`](super::judge).
+/// Displacements obey the discrete maximum principle: none is outside the convex hull of those of the boundary. In space
+/// that does not make the map injective, not even onto convex targets: ask [`judge`](super::judge).
 ///
 /// # Errors
 /// See [`ExtensionError`].
@@ -38,8 +39,9 @@ pub enum ExtensionError {
 /// One sparse factorization in the number of inner vertices.
 ///
 /// # Source
-/// Schneider 2017, section 5.5: a harmonic map of polyhedra. *Differences*: piecewise linear, and in one piece, not composed
-/// of two by way of a convex middle.
+/// Schneider 2017, section 5.5: a harmonic map of polyhedra. *Differences*: piecewise linear; displacements are harmonic, not
+/// places, so that a boundary that stays leaves the inside as it is; and in one piece, not composed of two by way of a
+/// convex middle.
 ///
 /// ```
 /// use homeo::cage::harmonic_extension;
@@ -74,10 +76,15 @@ pub fn harmonic_extension(
     let laplacian = GraphLaplacian::new(mesh.vertex_count(), edges.ends(), &weights);
     // Vertices of no cell have no neighbours, and stay.
     let fixed = |v: usize| match (is_boundary[v], is_used[v]) {
-        (true, _) => Some(after[v]),
-        (false, false) => Some(before[v]),
+        (true, _) => Some([0, 1, 2].map(|k| after[v][k] - before[v][k])),
+        (false, false) => Some([0.0; 3]),
         (false, true) => None,
     };
     let fixed: Vec<Option<Point3>> = (0..mesh.vertex_count()).map(fixed).collect();
-    Ok(laplacian.harmonic_direct(&fixed)?)
+    let mut places = laplacian.harmonic_direct(&fixed)?;
+    for (v, place) in places.iter_mut().enumerate() {
+        // Boundary places are taken over bit for bit.
+        *place = if is_boundary[v] { after[v] } else { [0, 1, 2].map(|k| before[v][k] + place[k]) };
+    }
+    Ok(places)
 }
