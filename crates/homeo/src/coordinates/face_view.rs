@@ -184,6 +184,21 @@ impl<T: Real<3>> FaceView<T> {
         Weights::High([0, 1, 2].map(|i| (self.edges[i].inset * mass + square_height * turn(i)) * scale(i)))
     }
 
+    /// Twice what the areas of the triangles from the point to the edges exceed that of the triangle by: zero on it and
+    /// positive off it, of the order of the square of the height.
+    pub fn excess(&self) -> T {
+        let square_height = self.height * self.height;
+        let part = |edge: &EdgeView<T>| {
+            // On the line of an edge there is a kink.
+            let is_kink = edge.square_distance.value() < 1e-200;
+            let distance = if is_kink { T::constant(0.0) } else { edge.square_distance.sqrt() };
+            let gap =
+                if edge.inset.value() > 0.0 { square_height / (distance + edge.inset) } else { distance - edge.inset };
+            gap * edge.length
+        };
+        part(&self.edges[0]) + part(&self.edges[1]) + part(&self.edges[2])
+    }
+
     /// The height, or a tiny one in place of none.
     pub fn divisor(&self) -> T {
         if self.height.value().abs() < LEAST_HEIGHT {

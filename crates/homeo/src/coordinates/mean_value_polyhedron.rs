@@ -1,17 +1,13 @@
 //! Mean value coordinates of closed triangle meshes.
 
-use homeo_core::predicate::is_degenerate_triangle;
-
 use super::CoordinateError;
+use super::face_mesh::FaceMesh;
 use super::face_view::{Face, Point3, Weights};
 use super::real::{Jet, Real};
-use super::space::{PolyhedronError, check_closed};
+use super::space::PolyhedronError;
 use super::spatial::SpatialCoordinates;
 use super::vectors::{minus, norm, scalar_product};
 use super::weighted::{balance, check_length, lagrange};
-
-/// Points farther than this many diagonals away are refused: their squares would overflow.
-const FARTHEST: f64 = 1e70;
 
 /// Where the error of a gradient by quotients, which grows with `phi / distance`, is worth another formula.
 const CLOSE: f64 = 1e3;
@@ -42,10 +38,7 @@ const CLOSE: f64 = 1e3;
 /// ```
 #[derive(Clone, Debug)]
 pub struct MeanValuePolyhedron {
-    vertices: Vec<Point3>,
-    faces: Vec<Face>,
-    /// A power of two that everything is multiplied by.
-    scale: f64,
+    mesh: FaceMesh,
 }
 
 /// Where the sums of weights go: values alone, or with gradients.
@@ -85,36 +78,13 @@ impl MeanValuePolyhedron {
     /// What is wrong with the mesh, the first thing found: an edge with other than two triangles that run along it in
     /// opposite directions, a triangle without area.
     pub fn new(vertices: &[Point3], triangles: &[[u32; 3]]) -> Result<Self, PolyhedronError> {
-        check_closed(vertices, triangles)?;
-        let range = |k: usize| {
-            let all = || vertices.iter().map(|v| v[k]);
-            all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
-        };
-        let diagonal = norm([range(0), range(1), range(2)]);
-        let scale = if diagonal > 0.0 { 2.0f64.powi(-diagonal.log2().floor() as i32) } else { 1.0 };
-        let vertices: Vec<Point3> = vertices.iter().map(|v| v.map(|x| scale * x)).collect();
-        let places = |corners: &[u32; 3]| corners.map(|v| vertices[v as usize]);
-        let is_flat = |corners: &[u32; 3]| {
-            let [a, b, c] = places(corners);
-            is_degenerate_triangle(a, b, c)
-        };
-        if let Some(triangle) = triangles.iter().position(is_flat) {
-            return Err(PolyhedronError::NoArea { triangle });
-        }
-        let faces = triangles.iter().map(|t| Face::new(t.map(|v| v as usize), places(t))).collect();
-        Ok(Self { vertices, faces, scale })
-    }
-
-    fn local(&self, point: Point3) -> Result<Point3, CoordinateError> {
-        let local = point.map(|x| self.scale * x);
-        let is_near = local.iter().all(|x| x.abs() < FARTHEST);
-        if is_near { Ok(local) } else { Err(CoordinateError::UndefinedInSpace { point }) }
+        Ok(Self { mesh: FaceMesh::new(vertices, triangles)? })
     }
 
     /// Adds up the weights of all triangles.
     fn gather<T: Real<3>>(&self, point: Point3, sink: &mut impl Sink<T>) -> Seen {
         let (mut largest, mut most) = (0, -1.0);
-        for (number, face) in self.faces.iter().enumerate() {
+        for (number, face) in self.mesh.faces.iter().enumerate() {
             let view = face.view::<T>(point);
             if let Some(edge) = view.edge_under() {
                 return Seen::Edge(number, edge);
@@ -134,7 +104,7 @@ impl MeanValuePolyhedron {
 
     /// Values on an edge: linear.
     fn on_edge(&self, face: usize, edge: usize, point: Point3, values: &mut [f64]) -> [usize; 2] {
-        let face = &self.faces[face];
+        let face = &self.mesh.faces[face];
         let (i, j) = ((edge + 1) % 3, (edge + 2) % 3);
         let [a, b] = [i, j].map(|k| norm(minus(face.places[k], point)));
         values.fill(0.0);
@@ -173,8 +143,8 @@ impl MeanValuePolyhedron {
         gradients: &mut [Point3],
     ) {
         for &(number, vertex) in dominant {
-            let (_, mut sum) = share(number, self.vertices[vertex]);
-            for (j, &place) in self.vertices.iter().enumerate() {
+            let (_, mut sum) = share(number, self.mesh.vertices[vertex]);
+            for (j, &place) in self.mesh.vertices.iter().enumerate() {
                 if dominant.iter().all(|&(_, v)| v != j) {
                     let (lambda, _) = share(number, place);
                     (0..3).for_each(|k| sum[k] -= lambda * gradients[j][k]);
@@ -187,13 +157,13 @@ impl MeanValuePolyhedron {
 
 impl SpatialCoordinates for MeanValuePolyhedron {
     fn vertex_count(&self) -> usize {
-        self.vertices.len()
+        self.mesh.vertices.len()
     }
 
     fn values_into(&self, point: Point3, values: &mut [f64]) -> Result<(), CoordinateError> {
-        check_length(self.vertices.len(), values.len())?;
-        let local = self.local(point)?;
-        if let Some(vertex) = self.vertices.iter().position(|&v| v == local) {
+        check_length(self.mesh.vertices.len(), values.len())?;
+        let local = self.mesh.local(point)?;
+        if let Some(vertex) = self.mesh.vertex_at(local) {
             lagrange(vertex, values);
             return Ok(());
         }
@@ -213,10 +183,10 @@ impl SpatialCoordinates for MeanValuePolyhedron {
         values: &mut [f64],
         gradients: &mut [Point3],
     ) -> Result<(), CoordinateError> {
-        check_length(self.vertices.len(), values.len())?;
-        check_length(self.vertices.len(), gradients.len())?;
-        let local = self.local(point)?;
-        if let Some(vertex) = self.vertices.iter().position(|&v| v == local) {
+        check_length(self.mesh.vertices.len(), values.len())?;
+        check_length(self.mesh.vertices.len(), gradients.len())?;
+        let local = self.mesh.local(point)?;
+        if let Some(vertex) = self.mesh.vertex_at(local) {
             return Err(CoordinateError::NoGradient { vertex });
         }
         values.fill(0.0);
@@ -226,7 +196,7 @@ impl SpatialCoordinates for MeanValuePolyhedron {
                 let [a, b] = self.on_edge(face, edge, local, values);
                 return Err(CoordinateError::NoGradientOnEdge { from: a.min(b), to: a.max(b) });
             }
-            Seen::Largest(face) => &self.faces[face],
+            Seen::Largest(face) => &self.mesh.faces[face],
         };
         let total = checked(values.iter().sum(), point)?;
         let sum: Point3 = std::array::from_fn(|k| gradients.iter().map(|g| g[k]).sum::<f64>() / total);
@@ -241,7 +211,7 @@ impl SpatialCoordinates for MeanValuePolyhedron {
         balance(largest, gradients);
         // Beside a triangle the sum of weights is that of a half sphere, divided by the distance.
         self.complete(face, std::f64::consts::PI / total.abs(), values, gradients);
-        gradients.iter_mut().flatten().for_each(|g| *g *= self.scale);
+        gradients.iter_mut().flatten().for_each(|g| *g *= self.mesh.scale);
         Ok(())
     }
 }

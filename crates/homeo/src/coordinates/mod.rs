@@ -8,12 +8,12 @@
 //! | [`Cauchy`], [`Green`] (complex, with normals; their own interface) | inside | yes |
 //! | [`WachspressPolyhedron`] | convex polyhedra | no |
 //! | [`MeanValuePolyhedron`] | space, closed meshes of any genus | yes |
+//! | [`MaximumEntropyPolyhedron`] | the inside of closed meshes of any genus | yes |
 //!
-//! Those of polygons implement [`PlanarCoordinates`] but for the complex ones, those of polyhedra [`SpatialCoordinates`]: `#V`
-//! functions that sum to 1, reproduce the point from the
-//! vertices, are linear on edges (in space on triangles)
-//! and 1 at their own vertex. None of them gives a map that is injective for every pair
-//! of polygons. `docs/methods/coordinates.md` says which to choose.
+//! Those of polygons implement [`PlanarCoordinates`] but for the complex ones, those of polyhedra [`SpatialCoordinates`]:
+//! `#V` functions that sum to 1, reproduce the point from the vertices, are linear on edges (in space on triangles) and 1 at
+//! their own vertex. None of them gives a map that is injective for every pair of polygons or polyhedra.
+//! `docs/methods/coordinates.md` says which to choose.
 //!
 //! ```
 //! use homeo::coordinates::{MeanValue, PlanarCoordinates};
@@ -28,8 +28,10 @@
 
 mod accurate;
 mod complex;
+mod face_mesh;
 mod face_view;
 mod maximum_entropy;
+mod maximum_entropy_polyhedron;
 mod mean_value;
 mod mean_value_batch;
 mod mean_value_polyhedron;
@@ -48,6 +50,7 @@ mod tests;
 
 pub use complex::{Cauchy, Complex, Green};
 pub use maximum_entropy::MaximumEntropy;
+pub use maximum_entropy_polyhedron::MaximumEntropyPolyhedron;
 pub use mean_value::MeanValue;
 pub use mean_value_polyhedron::MeanValuePolyhedron;
 pub use mean_value_vertex::mean_value_derivative_at_vertex;
@@ -134,6 +137,14 @@ pub enum CoordinateError {
     NotConverged {
         /// What was asked for.
         point: [f64; 2],
+        /// How many steps were made.
+        steps: usize,
+    },
+    /// The same for a point in space.
+    #[error("no convergence at {point:?} after {steps} steps: the point lies outside, or the polyhedron is too thin")]
+    NotConvergedInSpace {
+        /// What was asked for.
+        point: [f64; 3],
         /// How many steps were made.
         steps: usize,
     },

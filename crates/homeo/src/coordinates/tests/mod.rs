@@ -2,6 +2,7 @@
 
 mod controls;
 mod double;
+mod entropy;
 mod maps;
 mod naive;
 mod others;
