@@ -67,7 +67,7 @@ pub enum Verb {
     Transfer(TransferArgs),
     /// The map of a shell as two meshes with one connectivity
     Pl(PlArgs),
-    /// Warp a picture or points as a polygon moves, and never fold
+    /// Warp a picture or points as a polygon moves, a mesh as a cage moves, and never fold
     Warp(WarpArgs),
     /// The frames between, as a polygon moves with the picture in it
     Morph(MorphArgs),
@@ -479,6 +479,7 @@ pub struct ReportArgs {
   homeo warp testdata/images/checker.png --from testdata/polygons/square.json --to testdata/polygons/arrow.json -o warped.png
   homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo
   homeo warp testdata/images/checker.png --pair testdata/polygons/hole_turned.json --method mean-value -o smooth.png
+  homeo warp testdata/meshes/spot.mesh --from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj -o twisted.vtu
 
 Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is
 {\"source\": ..., \"target\": ...}. Vertices correspond by number. What lies outside the target becomes
@@ -491,15 +492,21 @@ pub struct WarpArgs {
     /// Points and where they go, in place of polygons: a table with the columns x,y,u,v
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["pair", "from"])]
     pub landmarks: Option<PathBuf>,
-    /// The warped picture or points, in a format by its extension
+    /// What has moved, in a format by its extension; a mesh with all its data
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Cages: steps at first [default: 1]
+    #[arg(long, value_name = "N", value_parser = steps)]
+    pub steps: Option<usize>,
+    /// Cages: while the mesh is folded, steps are doubled up to this [default: 64]
+    #[arg(long, value_name = "N", value_parser = steps)]
+    pub most_steps: Option<usize>,
     /// Keep the map with its certificate
     #[arg(long, value_name = "MAP.homeo")]
     pub map: Option<PathBuf>,
-    /// How the map is made
-    #[arg(long, value_enum, value_name = "METHOD", default_value_t = MethodName::Harmonic, conflicts_with = "landmarks")]
-    pub method: MethodName,
+    /// How the inside follows [default: harmonic with polygons, mean-value with cages]
+    #[arg(long, value_enum, value_name = "METHOD", conflicts_with = "landmarks")]
+    pub method: Option<MethodName>,
     #[command(flatten)]
     pub polygons: PolygonArgs,
     /// Save where every pixel of the result comes from, as float32 of shape (height, width, 2): what `remap` takes
@@ -514,7 +521,7 @@ pub struct PolygonArgs {
     #[arg(long, value_name = "A.json", requires = "to", conflicts_with = "pair")]
     pub from: Option<PathBuf>,
     /// The polygon after it has moved
-    #[arg(long, value_name = "B.json", requires = "from")]
+    #[arg(long, value_name = "B.json")]
     pub to: Option<PathBuf>,
     /// Both in one file
     #[arg(long, value_name = "PAIR.json")]
@@ -534,7 +541,7 @@ pub struct PolygonArgs {
     /// Polygons with a hole: by how much its rim turns [default: the pair's `winding_hint`, or as little as possible]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub turn: Option<f64>,
-    /// How the polygon moves, for the frames of a morph and for mean value maps
+    /// How polygons or cages move, for the frames of a morph and for mean value maps; cages: straight or angles
     #[arg(long, value_enum, value_name = "PATH", default_value_t = PathName::Auto)]
     pub path: PathName,
 }
@@ -587,12 +594,12 @@ pub struct BlendArgs {
     pub frames: u32,
 }
 
-/// How a map between polygons is made.
+/// How the inside follows polygons or cages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum MethodName {
-    /// Piecewise linear, through a convex polygon: there is one for every pair, and it has exact images
+    /// Piecewise linear: polygons through a convex one, for every pair and with exact images; tetrahedra from their boundary
     Harmonic,
-    /// Smooth: mean value maps from one polygon to the next on the way, as many as it takes
+    /// Smooth: by mean value coordinates from one polygon or cage to the next on the way, as many as it takes
     MeanValue,
 }
 
@@ -681,6 +688,11 @@ fn positive_seconds(text: &str) -> Result<f64, String> {
 
 fn at_least_one(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|&n| n >= 1).ok_or_else(|| "a whole number from 1 on is needed".to_owned())
+}
+
+fn steps(text: &str) -> Result<usize, String> {
+    let is_sensible = |n: &usize| (1..=100_000).contains(n);
+    text.parse().ok().filter(is_sensible).ok_or_else(|| "a whole number from 1 to 100000 is needed".to_owned())
 }
 
 fn bytes(text: &str) -> Result<u64, String> {

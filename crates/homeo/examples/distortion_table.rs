@@ -11,10 +11,11 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use homeo::composite::{CompositeMap, LinearPath, PartitionParams};
+use homeo::composite::{CompositeMap, PartitionParams};
 use homeo::construct::harmonic::{HarmonicParams, MiddleShape, harmonic_map};
 use homeo::map::{Distortion, DistortionSummary, HarmonicMap};
 use homeo::progress::Silent;
+use homeo::shape::LinearPath;
 use homeo_core::planar::{DomainPair, Point2, read_pair};
 
 const KINDS: [Distortion; 2] = [Distortion::Conformal, Distortion::Isometric];
@@ -35,7 +36,7 @@ fn mean_value(pair: &DomainPair, points: &[(Point2, f64)], seconds: u64) -> Opti
         return None;
     }
     let params = PartitionParams { timeout: Some(Duration::from_secs(seconds)), ..PartitionParams::default() };
-    let (map, _) = CompositeMap::build(&LinearPath::new(pair.clone()), &params, &Silent).ok()?;
+    let (map, _) = CompositeMap::build(&LinearPath::between(pair).ok()?, &params, &Silent).ok()?;
     let mut sums = [DistortionSummary { mean: 0.0, largest: 0.0 }; 2];
     let mut total = 0.0;
     for &(point, area) in points {

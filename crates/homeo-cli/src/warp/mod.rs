@@ -1,7 +1,9 @@
-//! `homeo warp`: pictures and points move with a polygon, one-to-one.
+//! `homeo warp`: pictures and points move with a polygon, meshes and points in space with a cage, one-to-one.
 
+mod cage;
 mod composite;
 mod landmarks;
+mod moved;
 pub mod path;
 pub mod picture;
 pub mod polygons;
@@ -30,6 +32,10 @@ use picture::Picture;
 
 /// Makes the map, proves it and moves what is to be moved.
 pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Result<Answer> {
+    if cage::is_wanted(options) {
+        return cage::run(session, options, outputs);
+    }
+    cage::refuse_options(options)?;
     check_outputs(options)?;
     session.stage("read");
     let input = Input::read(&options.input)?;
@@ -66,7 +72,7 @@ fn make(session: &Session, options: &WarpArgs) -> Result<Made> {
         return Ok(piecewise_linear(landmarks::map(path)?.into(), json!({"landmarks": file_name(path)})));
     }
     let (pair, turn) = polygons::read(&options.polygons)?;
-    if options.method == MethodName::MeanValue {
+    if options.method == Some(MethodName::MeanValue) {
         let (map, made) = composite::map(session, &pair, &options.polygons, turn)?;
         let composite::Made { path, info } = made;
         return Ok(Made {

@@ -7,11 +7,14 @@
 //! | [`PositiveMeanValue`], [`MaximumEntropy`] | the closed domain | yes |
 //! | [`HarmonicCoordinates`] (approximate: see its page) | the closed domain | yes |
 //! | [`Cauchy`], [`Green`] (complex, with normals; their own interface) | inside | yes |
-//! | [`WachspressPolyhedron`] (in space; its own interface) | convex polyhedra | no |
+//! | [`WachspressPolyhedron`] | convex polyhedra | no |
+//! | [`MeanValuePolyhedron`] | space, closed meshes of any genus | yes |
+//! | [`MaximumEntropyPolyhedron`] | the inside of closed meshes of any genus | yes |
 //!
-//! All of one polygon but the last two implement [`PlanarCoordinates`]: `#V` functions that sum to 1, reproduce the point from the
-//! vertices, are linear on edges and 1 at their own vertex. None of them gives a map that is injective for every pair
-//! of polygons. `docs/methods/coordinates.md` says which to choose.
+//! Those of polygons implement [`PlanarCoordinates`] but for the complex ones, those of polyhedra [`SpatialCoordinates`]:
+//! `#V` functions that sum to 1, reproduce the point from the vertices, are linear on edges (in space on triangles) and 1 at
+//! their own vertex. None of them gives a map that is injective for every pair of polygons or polyhedra.
+//! `docs/methods/coordinates.md` says which to choose.
 //!
 //! ```
 //! use homeo::coordinates::{MeanValue, PlanarCoordinates};
@@ -26,16 +29,22 @@
 
 mod accurate;
 mod complex;
+mod face_mesh;
+mod face_view;
 mod harmonic;
 mod maximum_entropy;
+mod maximum_entropy_polyhedron;
 mod mean_value;
 mod mean_value_batch;
+mod mean_value_polyhedron;
 mod mean_value_vertex;
 mod outline;
 mod positive;
 mod real;
 mod space;
+mod spatial;
 mod three_point;
+pub(crate) mod vectors;
 mod weighted;
 
 #[cfg(test)]
@@ -44,10 +53,13 @@ mod tests;
 pub use complex::{Cauchy, Complex, Green};
 pub use harmonic::HarmonicCoordinates;
 pub use maximum_entropy::MaximumEntropy;
+pub use maximum_entropy_polyhedron::MaximumEntropyPolyhedron;
 pub use mean_value::MeanValue;
+pub use mean_value_polyhedron::MeanValuePolyhedron;
 pub use mean_value_vertex::mean_value_derivative_at_vertex;
 pub use positive::PositiveMeanValue;
 pub use space::{PolyhedronError, WachspressPolyhedron};
+pub use spatial::SpatialCoordinates;
 pub use three_point::{DiscreteHarmonic, ThreePoint, Wachspress};
 
 /// Coordinates of points with respect to the vertices of a planar domain, ring after ring.
@@ -94,6 +106,20 @@ pub enum CoordinateError {
         /// What was asked for.
         point: [f64; 3],
     },
+    /// The point is not finite or too far away, or the weights sum to zero there.
+    #[error("the coordinates are not defined at {point:?}")]
+    UndefinedInSpace {
+        /// What was asked for.
+        point: [f64; 3],
+    },
+    /// There is no gradient on an edge of a polyhedron.
+    #[error("there is no gradient on the edge {from} to {to}: take a point beside it")]
+    NoGradientOnEdge {
+        /// One end.
+        from: usize,
+        /// The other.
+        to: usize,
+    },
     /// The kind is for strictly convex polygons.
     #[error("the polygon is not strictly convex at vertex {vertex}: take mean value coordinates")]
     NotConvex {
@@ -114,6 +140,14 @@ pub enum CoordinateError {
     NotConverged {
         /// What was asked for.
         point: [f64; 2],
+        /// How many steps were made.
+        steps: usize,
+    },
+    /// The same for a point in space.
+    #[error("no convergence at {point:?} after {steps} steps: the point lies outside, or the polyhedron is too thin")]
+    NotConvergedInSpace {
+        /// What was asked for.
+        point: [f64; 3],
         /// How many steps were made.
         steps: usize,
     },

@@ -6,6 +6,7 @@ use homeo_core::predicate::{Sign, orient3d};
 
 use super::CoordinateError;
 use super::real::{Jet, Real};
+use super::spatial::SpatialCoordinates;
 use super::weighted::{check_length, lagrange, normalise};
 
 /// Why triangles bound no polyhedron that a kind is for.
@@ -41,6 +42,12 @@ pub enum PolyhedronError {
         /// The triangle.
         triangle: usize,
     },
+    /// A triangle has no area.
+    #[error("triangle {triangle} has no area: take it away, or move one of its corners")]
+    NoArea {
+        /// The triangle.
+        triangle: usize,
+    },
     /// A vertex is no corner of the polyhedron: all its triangles lie in one or two planes.
     #[error("vertex {vertex} is no corner: its triangles lie in fewer than three planes")]
     NoCorner {
@@ -62,7 +69,7 @@ type Point3 = [f64; 3];
 /// Linear in the number of triangles.
 ///
 /// ```
-/// use homeo::coordinates::WachspressPolyhedron;
+/// use homeo::coordinates::{SpatialCoordinates, WachspressPolyhedron};
 /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 /// let kind = WachspressPolyhedron::new(&corners, &triangles)?;
@@ -116,46 +123,6 @@ impl WachspressPolyhedron {
         Ok(Self { vertices: vertices.to_vec(), planes, terms, diagonal })
     }
 
-    /// How many vertices there are: #V.
-    pub fn vertex_count(&self) -> usize {
-        self.vertices.len()
-    }
-
-    /// Values (#V) at a point of the closed polyhedron.
-    ///
-    /// # Errors
-    /// The point is outside or not finite, or the buffer has another length.
-    pub fn values_into(&self, point: Point3, values: &mut [f64]) -> Result<(), CoordinateError> {
-        check_length(self.vertices.len(), values.len())?;
-        if let Some(vertex) = self.vertices.iter().position(|&v| v == point) {
-            lagrange(vertex, values);
-            return Ok(());
-        }
-        let weights = self.weights::<f64>(point)?;
-        let total: f64 = weights.iter().sum();
-        values.iter_mut().zip(&weights).for_each(|(value, weight)| *value = weight / total);
-        check_space(total, point)
-    }
-
-    /// Values (#V) and gradients (#V by 3) at a point of the closed polyhedron that is no vertex.
-    ///
-    /// # Errors
-    /// As for the values; at vertices.
-    pub fn gradients_into(
-        &self,
-        point: Point3,
-        values: &mut [f64],
-        gradients: &mut [Point3],
-    ) -> Result<(), CoordinateError> {
-        check_length(self.vertices.len(), values.len())?;
-        check_length(self.vertices.len(), gradients.len())?;
-        if let Some(vertex) = self.vertices.iter().position(|&v| v == point) {
-            return Err(CoordinateError::NoGradient { vertex });
-        }
-        let weights = self.weights::<Jet<3>>(point)?;
-        check_space(normalise(&weights, values, gradients), point)
-    }
-
     fn weights<T: Real<3>>(&self, point: Point3) -> Result<Vec<T>, CoordinateError> {
         let distance = |(normal, on): &(Point3, Point3)| {
             let height: f64 = (0..3).map(|k| normal[k] * (point[k] - on[k])).sum();
@@ -183,8 +150,46 @@ impl WachspressPolyhedron {
     }
 }
 
+impl SpatialCoordinates for WachspressPolyhedron {
+    fn vertex_count(&self) -> usize {
+        self.vertices.len()
+    }
+
+    fn values_into(&self, point: Point3, values: &mut [f64]) -> Result<(), CoordinateError> {
+        check_length(self.vertices.len(), values.len())?;
+        if let Some(vertex) = self.vertices.iter().position(|&v| v == point) {
+            lagrange(vertex, values);
+            return Ok(());
+        }
+        let weights = self.weights::<f64>(point)?;
+        let total: f64 = weights.iter().sum();
+        values.iter_mut().zip(&weights).for_each(|(value, weight)| *value = weight / total);
+        check_space(total, point)
+    }
+
+    fn gradients_into(
+        &self,
+        point: Point3,
+        values: &mut [f64],
+        gradients: &mut [Point3],
+    ) -> Result<(), CoordinateError> {
+        check_length(self.vertices.len(), values.len())?;
+        check_length(self.vertices.len(), gradients.len())?;
+        if let Some(vertex) = self.vertices.iter().position(|&v| v == point) {
+            return Err(CoordinateError::NoGradient { vertex });
+        }
+        let weights = self.weights::<Jet<3>>(point)?;
+        check_space(normalise(&weights, values, gradients), point)
+    }
+}
+
 fn check_space(total: f64, point: Point3) -> Result<(), CoordinateError> {
     if total > 0.0 && total.is_finite() { Ok(()) } else { Err(CoordinateError::OutsidePolyhedron { point }) }
+}
+
+/// Refuses what is not a closed mesh in which neighbours agree on orientation.
+pub(super) fn check_closed(vertices: &[Point3], triangles: &[[u32; 3]]) -> Result<(), PolyhedronError> {
+    followers(vertices, triangles).map(|_| ())
 }
 
 /// Of each directed edge its triangle.

@@ -11,6 +11,12 @@ use homeo_core::mesh::VertexId;
 #[error("linear solver: {0}")]
 pub struct SolveError(String);
 
+impl SolveError {
+    pub(super) fn new(what: &str) -> Self {
+        Self(what.to_owned())
+    }
+}
+
 /// Laplacian `(L u)_i = sum_j w_ij (u_i - u_j)` of a graph with positive weights.
 ///
 /// Stored by rows; the rows of a vertex list its neighbours in ascending order of edges.
@@ -180,7 +186,7 @@ impl GraphLaplacian {
                 triplets.push(Triplet::new(k, number[j], -w));
             }
         }
-        let failed = |what: &str| SolveError(what.to_owned());
+        let failed = SolveError::new;
         let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(free.len(), free.len(), &triplets)
             .map_err(|_| failed("the matrix could not be built"))?;
         let symbolic = SymbolicLlt::try_new(matrix.symbolic(), Side::Lower)

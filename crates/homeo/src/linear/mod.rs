@@ -3,6 +3,8 @@
 //! All fields here only guide a construction: no claim rests on their accuracy. Weights are kept
 //! positive, so that a discrete harmonic field has its extrema on the boundary (maximum principle).
 
+mod grounded;
 mod laplacian;
 
+pub use grounded::GroundedLaplacian;
 pub use laplacian::{GraphLaplacian, SolveError};

@@ -5,6 +5,8 @@
 //! | [`LinearPath`] | rings with corresponding vertices | edges parallel where they are parallel in both |
 //! | [`LengthsAndAngles`] | one ring with corresponding vertices | turning angles linear, lengths nearly so |
 //! | [`CurvatureBlend`] | two sampled closed curves | curvature nearly linear, length linear |
+//! | [`StraightPolyhedra`] | two polyhedra with the same triangles | edges parallel where they are parallel in both |
+//! | [`TurningPolyhedra`] | the same | rotations of triangles even, stretches linear, nearly so |
 //!
 //! *Source*: Schneider 2017, chapter 3; *differences* are with each path and in `docs/methods/shapes.md`.
 //! *Arithmetic*: floating point; only [`check_simple`] decides exactly, on the stored numbers. No path keeps shapes
@@ -26,10 +28,14 @@ mod closing;
 mod curvature;
 mod lengths_and_angles;
 mod linear;
+mod polyhedron;
 mod ring;
+mod rotation;
 mod simple;
 mod turning;
 
+#[cfg(test)]
+mod polyhedron_tests;
 #[cfg(test)]
 mod tests;
 
@@ -37,6 +43,7 @@ pub use blend::CurvatureBlend;
 pub use curvature::{CurvatureProfile, sample_closed};
 pub use lengths_and_angles::LengthsAndAngles;
 pub use linear::LinearPath;
+pub use polyhedron::{PolyhedronPath, PolyhedronPathError, StraightPolyhedra, TurningPolyhedra};
 pub use simple::{NotSimple, check_simple, first_not_simple};
 pub use turning::TurningPath;
 

@@ -2,11 +2,14 @@
 
 mod controls;
 mod double;
+mod entropy;
 mod maps;
 mod naive;
 mod others;
 mod shapes;
+mod solids;
 mod space;
+mod spatial;
 mod suite;
 
 use homeo_core::planar::PlanarDomain;

@@ -1,0 +1,230 @@
+//! Meshes and points in space that move with a cage, and tetrahedral meshes that follow their boundary.
+
+use std::path::Path;
+
+use homeo::cage::{
+    CageError, CagePair, DeformError, Deformed, Moved, Steps, Verdict, deform, harmonic_extension, judge,
+};
+use homeo::progress::Progress;
+use homeo::shape::{PolyhedronPath, StraightPolyhedra, TurningPolyhedra};
+use homeo_core::io::Format;
+use homeo_core::mesh::TetrahedronComplex;
+use serde_json::json;
+
+use super::moved::{Input, refused, write};
+use crate::answer::Answer;
+use crate::args::{MethodName, PathName, WarpArgs};
+use crate::failure::{Failure, Result};
+use crate::mesh_input::{self, Cells, MeshInput, Requested};
+use crate::outputs::{Outputs, check_target};
+use crate::points::PointFormat;
+use crate::refuse;
+use crate::session::Session;
+use crate::text::{Lines, stages};
+
+/// Whether cages are asked for, not polygons.
+pub fn is_wanted(options: &WarpArgs) -> bool {
+    // Polygons are JSON, and so are some meshes without coordinates.
+    let is_mesh = |path: &Path| Format::of_path(path).is_some() && path.extension().is_none_or(|e| e != "json");
+    let paths = [&options.polygons.from, &options.polygons.to];
+    paths.into_iter().flatten().any(|path| is_mesh(path))
+}
+
+/// Refuses options of cages where polygons are given.
+pub fn refuse_options(options: &WarpArgs) -> Result<()> {
+    let given = [("--steps", options.steps.is_some()), ("--most-steps", options.most_steps.is_some())];
+    match given.iter().find(|(_, is_given)| *is_given) {
+        Some((name, _)) => {
+            Err(Failure::usage(format!("{name} is for cages: closed triangle meshes as --from and --to")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Moves a mesh or points, and judges what comes out.
+pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Result<Answer> {
+    let output = check_options(options)?;
+    if options.method == Some(MethodName::Harmonic) {
+        return run_harmonic(session, options, output, outputs);
+    }
+    let (Some(from), Some(to)) = (&options.polygons.from, &options.polygons.to) else {
+        return Err(Failure::usage("give --from and --to: the cages before and after"));
+    };
+    let cages = read_cages(session, from, to)?;
+    let input = Input::read(session, &options.input)?;
+    session.stage("check");
+    input.refuse_unless_sound()?;
+    session.stage("warp");
+    let path = path_of(options, &cages)?;
+    let steps = Steps {
+        first: options.steps.unwrap_or(1),
+        most: options.most_steps.unwrap_or(Steps::default().most).max(options.steps.unwrap_or(1)),
+    };
+    let done = deform(&cages, path.as_ref(), input.moved(), input.positions(), steps, session)
+        .map_err(|error| explain(session, &error))?;
+    if let Some(failure) = refused(&done.verdict, Some(done.steps), &input) {
+        return Err(failure);
+    }
+    finish(session, options, input, done, output, outputs)
+}
+
+/// A tetrahedral mesh follows its boundary.
+fn run_harmonic(session: &Session, options: &WarpArgs, output: &Path, outputs: &mut Outputs) -> Result<Answer> {
+    let Some(to) = &options.polygons.to else {
+        return Err(Failure::usage("give --to: the boundary of the mesh after it has moved"));
+    };
+    if options.polygons.from.is_some() || options.steps.is_some() || options.polygons.path != PathName::Auto {
+        return Err(Failure::usage("--method harmonic takes --to alone: it makes one step from the mesh itself"));
+    }
+    let surface = mesh_input::read(session, to, Requested::default())?;
+    let input = Input::read(session, &options.input)?;
+    session.stage("check");
+    input.refuse_unless_sound()?;
+    let Moved::Volume(complex) = input.moved() else {
+        return Err(Failure::input("no-volume", "--method harmonic moves tetrahedral meshes; give cages for others"));
+    };
+    session.stage("warp");
+    let after = boundary_places(complex, &input, &surface)?;
+    let positions = harmonic_extension(complex, input.positions(), &after)
+        .map_err(|error| Failure::limits("no-map", format!("{error}; nothing was written")))?;
+    let verdict = judge(input.moved(), input.positions(), &positions);
+    if let Some(failure) = refused(&verdict, None, &input) {
+        return Err(failure);
+    }
+    finish(session, options, input, Deformed { positions, steps: 1, verdict, crossing_cage: None }, output, outputs)
+}
+
+/// Where the boundary goes: the surface has the vertices of the mesh, or those on its boundary, in the same order.
+fn boundary_places(complex: &TetrahedronComplex, input: &Input, surface: &MeshInput) -> Result<Vec<[f64; 3]>> {
+    let places = &surface.file.positions;
+    if places.len() == complex.vertex_count() {
+        return Ok(places.clone());
+    }
+    let adjacency = complex.adjacency().map_err(|e| Failure::input("non-manifold-facet", e.to_string()))?;
+    let is_boundary = adjacency.boundary_vertices(complex);
+    let count = is_boundary.iter().filter(|&&b| b).count();
+    if places.len() != count {
+        let message = format!(
+            "the surface has {} vertices; it must have those of the mesh ({}), or those on its boundary ({count}), in \
+             the same order",
+            places.len(),
+            complex.vertex_count()
+        );
+        return Err(Failure::input("counts-differ", message));
+    }
+    let mut after = input.positions().to_vec();
+    let boundary = (0..after.len()).filter(|&v| is_boundary[v]);
+    boundary.zip(places).for_each(|(v, place)| after[v] = *place);
+    Ok(after)
+}
+
+fn check_options(options: &WarpArgs) -> Result<&Path> {
+    let refused = [
+        ("--landmarks", options.landmarks.is_some()),
+        ("--pair", options.polygons.pair.is_some()),
+        ("--map", options.map.is_some()),
+        ("--field", options.field.is_some()),
+    ];
+    if let Some((name, _)) = refused.iter().find(|(_, is_given)| *is_given) {
+        return Err(Failure::usage(format!("{name} is for polygons, not for cages")));
+    }
+    let Some(output) = &options.output else { return Err(Failure::usage("give -o OUT for what has moved")) };
+    let mut inputs = vec![options.input.as_path()];
+    inputs.extend([&options.polygons.from, &options.polygons.to].into_iter().flatten().map(|path| path.as_path()));
+    check_target(output, &inputs)?;
+    if super::picture::is_picture(&options.input) {
+        return Err(Failure::usage("pictures move with polygons; cages move meshes and points in space"));
+    }
+    if PointFormat::of_path(&options.input).is_ok() {
+        PointFormat::of_path(output)?;
+    } else if Format::of_path(output).is_none() {
+        return Err(Failure::usage(format!("{}: the extension names no mesh format", output.display())));
+    }
+    Ok(output)
+}
+
+fn read_cages(session: &Session, from: &Path, to: &Path) -> Result<CagePair> {
+    let [before, after] = [read_cage(session, from)?, read_cage(session, to)?];
+    session.check()?;
+    CagePair::of_meshes([before.0, after.0], [before.1, after.1]).map_err(|error| {
+        let code = match &error {
+            CageError::VertexCounts { .. } => "counts-differ",
+            CageError::OtherTriangles { .. } => "other-triangles",
+            CageError::NotClosed { .. } => "not-closed",
+            CageError::NotEmbedded { violation, .. } => violation.code,
+        };
+        let failure = Failure::input(code, format!("{} and {}: {error}", from.display(), to.display()));
+        match error {
+            CageError::NotEmbedded { violation, .. } => failure.with("violations", json!([violation])),
+            _ => failure,
+        }
+    })
+}
+
+type Surface = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
+fn read_cage(session: &Session, path: &Path) -> Result<Surface> {
+    let mesh = mesh_input::read(session, path, Requested::default())?;
+    refuse::unless_simplices(&mesh, false)?;
+    match mesh.cells {
+        Cells::Triangles(complex) => {
+            let triangles = complex.cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
+            Ok((mesh.file.positions, triangles))
+        }
+        Cells::Tetrahedra(_) => {
+            let message = format!("{} is a tetrahedral mesh; a cage is a closed triangle mesh", path.display());
+            Err(Failure::input("no-surface", message))
+        }
+    }
+}
+
+fn path_of(options: &WarpArgs, cages: &CagePair) -> Result<Box<dyn PolyhedronPath>> {
+    let (source, target) = (cages.source().to_vec(), cages.target().to_vec());
+    let failed = |error: homeo::shape::PolyhedronPathError| Failure::input("no-path", error.to_string());
+    Ok(match options.polygons.path {
+        PathName::Auto | PathName::Straight => Box::new(StraightPolyhedra::new(source, target).map_err(failed)?),
+        PathName::Angles => Box::new(TurningPolyhedra::new(source, target, cages.triangles()).map_err(failed)?),
+        PathName::Turning => {
+            return Err(Failure::usage("--path turning is for polygons; cages take straight or angles"));
+        }
+    })
+}
+
+fn explain(session: &Session, error: &DeformError) -> Failure {
+    match error {
+        DeformError::Cancelled => session.stopped(),
+        _ => Failure::limits("no-map", format!("{error}; nothing was written")),
+    }
+}
+
+fn finish(
+    session: &Session,
+    options: &WarpArgs,
+    input: Input,
+    done: Deformed,
+    output: &Path,
+    outputs: &mut Outputs,
+) -> Result<Answer> {
+    session.check()?;
+    let moved = input.described();
+    let checked = input.checked();
+    write(session, input, done.positions, output, outputs)?;
+    session.end_stage();
+    let mut lines = Lines::default();
+    lines.add("moved", &moved);
+    let is_judged = done.verdict != Verdict::NothingToJudge;
+    lines.add("checked", if is_judged { checked } else { "nothing: points make no mesh that could fold" });
+    lines.add("steps", done.steps);
+    if let Some(time) = done.crossing_cage {
+        lines.add("cages", format!("the one at time {time} meets itself; the check of the mesh does not rest on it"));
+    }
+    lines.add("time", stages(&session.seconds()));
+    lines.add("written", output.display());
+    let fields = json!({
+        "target": if options.method == Some(MethodName::Harmonic) { "boundary" } else { "cage" },
+        "steps": done.steps, "crossing_cage": done.crossing_cage,
+        "checked": {"holds": is_judged, "statement": if is_judged { Some(checked) } else { None }},
+        "quality": {"moved": moved}, "output": output.display().to_string(),
+    });
+    Ok(Answer::new(fields, lines.below(&format!("{} warped", options.input.display()))))
+}

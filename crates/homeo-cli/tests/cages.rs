@@ -1,0 +1,153 @@
+//! `homeo warp` with cages: what moves, what is kept, what is refused.
+
+mod common;
+
+use common::Folder;
+use homeo_core::io::{Element, read_mesh};
+use homeo_core::mesh::TetrahedronComplex;
+use homeo_core::predicate::orient3d;
+use homeo_core::topology::{Answer, Options, analyse_tetrahedra};
+
+const BARS: &str = "--from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj";
+
+fn folder() -> Folder {
+    Folder::new().with_testdata()
+}
+
+#[test]
+fn a_tetrahedral_mesh_is_twisted_and_no_cell_turns_over() {
+    let folder = folder();
+    for path in ["straight", "angles"] {
+        let line = format!("warp testdata/meshes/spot.mesh {BARS} --path {path} -o twisted.vtu --json");
+        let report = folder.line(&line).expect(0).json();
+        assert_eq!(report["checked"]["holds"], true);
+        assert_eq!(report["input"]["tetrahedra"], 3020);
+        let before = read_mesh(&folder.path("testdata/meshes/spot.mesh")).unwrap();
+        let after = read_mesh(&folder.path("twisted.vtu")).unwrap();
+        assert_eq!(before.tetrahedra, after.tetrahedra);
+        assert_ne!(before.positions, after.positions);
+        let sign = |points: &[[f64; 3]], cell: &[u32; 4]| {
+            let [a, b, c, d] = cell.map(|v| points[v as usize]);
+            orient3d(a, b, c, d)
+        };
+        let kept = |cell: &&[u32; 4]| sign(&before.positions, cell) == sign(&after.positions, cell);
+        assert_eq!(after.tetrahedra.iter().filter(kept).count(), 3020);
+        let complex = TetrahedronComplex::from_indices(after.vertex_count, &after.tetrahedra).unwrap();
+        let report = analyse_tetrahedra(&after.positions, &complex, Options::default());
+        assert_eq!(report.embedded.answer, Answer::Yes);
+    }
+}
+
+/// The same bytes whatever the number of threads.
+#[test]
+fn threads_make_no_difference() {
+    let folder = folder();
+    for (threads, name) in [(1, "one.mesh"), (3, "three.mesh")] {
+        folder.line(&format!("warp testdata/meshes/spot.mesh {BARS} --threads {threads} -o {name}")).expect(0);
+    }
+    assert_eq!(folder.read("one.mesh"), folder.read("three.mesh"));
+}
+
+/// A cage that is turned inside out at one end: nothing is written, and the cells are named.
+#[test]
+fn folded_cells_are_named_and_nothing_is_written() {
+    let folder = folder();
+    let bar = folder.text("testdata/cages/bar.obj");
+    // The last floor is pushed through the body, and the cage stays embedded: its end is hollow.
+    let mut lines: Vec<String> = bar.lines().map(str::to_owned).collect();
+    for line in &mut lines[20..24] {
+        let numbers: Vec<f64> = line.split_whitespace().skip(1).map(|x| x.parse().unwrap()).collect();
+        *line = format!("v {} {} {}", 0.5 * numbers[0], 0.5 * (numbers[1] - 0.15) + 0.15, -0.5);
+    }
+    folder.write("hollow.obj", lines.join("\n"));
+    let line =
+        "warp testdata/meshes/spot.mesh --from testdata/cages/bar.obj --to hollow.obj --most-steps 1 -o out.mesh";
+    let run = folder.line(&format!("{line} --json")).expect(4);
+    let report = run.json();
+    assert_eq!(report["error"]["code"], "folded");
+    let folded = report["folded"].as_array().unwrap();
+    assert!(!folded.is_empty() && report["folded_count"].as_u64().unwrap() >= folded.len() as u64);
+    assert!(run.stderr.contains("Nothing was written") && !folder.path("out.mesh").exists());
+}
+
+#[test]
+fn data_of_surfaces_is_kept() {
+    let folder = folder();
+    let big = |name: &str, stretch: f64| {
+        let bar = folder.text("testdata/cages/bar.obj");
+        let place = |line: &str| match line.strip_prefix("v ") {
+            Some(rest) => {
+                let numbers: Vec<f64> = rest.split_whitespace().map(|x| 9.0 * x.parse::<f64>().unwrap()).collect();
+                format!("v {} {} {}", numbers[0], numbers[1] - 1.0, stretch * (numbers[2] - 2.0))
+            }
+            None => line.to_owned(),
+        };
+        folder.write(name, bar.lines().map(place).collect::<Vec<_>>().join("\n"));
+    };
+    big("before.obj", 1.0);
+    big("after.obj", 2.0);
+    folder.line("warp testdata/meshes/knot.ply --from before.obj --to after.obj --steps 3 -o knot.ply").expect(0);
+    let (before, after) =
+        (read_mesh(&folder.path("testdata/meshes/knot.ply")).unwrap(), read_mesh(&folder.path("knot.ply")).unwrap());
+    assert_eq!((&before.polygons, &before.attributes), (&after.polygons, &after.attributes));
+    assert!(after.attributes.iter().any(|a| a.element == Element::Vertex));
+    for (p, q) in before.positions.iter().zip(&after.positions) {
+        assert!((q[2] - 2.0 * p[2]).abs() < 1e-11 * (1.0 + p[2].abs()) && (q[0] - p[0]).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn points_move_and_are_not_judged() {
+    let folder = folder();
+    folder.write("points.csv", "x,y,z\n0.1,0.2,0.3\n-0.2,0.5,0.9\n");
+    let report = folder.line(&format!("warp points.csv {BARS} -o moved.csv --json")).expect(0).json();
+    assert_eq!(report["checked"]["holds"], false);
+    assert_eq!(folder.text("moved.csv").lines().count(), 3);
+    folder.write("flat.csv", "x,y\n0.1,0.2\n");
+    folder.line(&format!("warp flat.csv {BARS} -o moved.csv")).expect(3);
+}
+
+#[test]
+fn cages_that_are_none_are_refused_with_an_element() {
+    let folder = folder();
+    let bar = folder.text("testdata/cages/bar.obj");
+    let open: Vec<&str> = bar.lines().take(bar.lines().count() - 1).collect();
+    folder.write("open.obj", open.join("\n"));
+    folder.write("crossed.obj", bar.replacen("v -0.6 -0.85 -0.8", "v 3 3 3", 1));
+    let refused = |from: &str, to: &str| {
+        let run = folder.line(&format!("warp testdata/meshes/spot.mesh --from {from} --to {to} -o out.mesh --json"));
+        let report = run.expect(3).json();
+        (report["error"]["code"].as_str().unwrap().to_owned(), report["error"]["message"].as_str().unwrap().to_owned())
+    };
+    let (code, message) = refused("open.obj", "open.obj");
+    assert!(code == "not-closed" && message.contains("edge"), "{message}");
+    let (code, _) = refused("testdata/cages/bar.obj", "open.obj");
+    assert_eq!(code, "other-triangles");
+    let (code, _) = refused("testdata/cages/bar.obj", "crossed.obj");
+    assert_eq!(code, "self-intersection");
+    let (code, _) = refused("testdata/cages/bar.obj", "testdata/meshes/torus.obj");
+    assert_eq!(code, "counts-differ");
+    let (code, _) = refused("testdata/cages/bar.obj", "testdata/meshes/spot.mesh");
+    assert_eq!(code, "no-surface");
+    folder.line(&format!("warp testdata/meshes/spot.mesh {BARS} --map m.homeo -o out.mesh")).expect(2);
+    let still = "--from testdata/cages/bar.obj --to testdata/cages/bar.obj";
+    let run = folder.line(&format!("warp testdata/meshes/torus.obj {still} -o out.stl")).expect(2);
+    assert!(run.stderr.contains("bit for bit") && !folder.path("out.stl").exists());
+}
+
+/// A tetrahedral mesh that follows its own boundary, stretched.
+#[test]
+fn the_inside_follows_the_boundary() {
+    let folder = folder();
+    let mesh = read_mesh(&folder.path("testdata/meshes/spot.mesh")).unwrap();
+    let mut obj = String::new();
+    for p in &mesh.positions {
+        obj.push_str(&format!("v {} {} {}\n", 1.5 * p[0], p[1], p[2] + 0.1 * p[1]));
+    }
+    folder.write("stretched.obj", obj + "f 1 2 3\n");
+    let line = "warp testdata/meshes/spot.mesh --to stretched.obj --method harmonic -o out.mesh --json";
+    let report = folder.line(line).expect(0).json();
+    assert_eq!((&report["checked"]["holds"], &report["target"]), (&true.into(), &"boundary".into()));
+    folder.line("warp testdata/meshes/torus.obj --to stretched.obj --method harmonic -o out.obj").expect(3);
+    folder.line("warp testdata/meshes/spot.mesh --to testdata/cages/bar.obj --method harmonic -o out.mesh").expect(3);
+}
