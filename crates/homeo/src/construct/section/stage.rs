@@ -4,6 +4,7 @@ use homeo_core::predicate::is_degenerate_triangle;
 use homeo_core::spatial::{Aabb, Tree};
 
 use super::Fault;
+use super::shape::normal;
 use crate::construct::shell::prism::{Prism, is_inside_wall, is_outside, is_pinched, sides};
 use crate::map::ShellParts;
 
@@ -86,6 +87,25 @@ impl Stage {
         });
         outcome
     }
+
+    /// The smallest cosine of the angles between the normal of a triangle and the pillars that have to cross it, or at
+    /// most `floor` if it is not larger; rounded.
+    pub fn steepness(&self, triangle: [Point; 3], floor: f64) -> f64 {
+        let hull = Aabb::of(&triangle);
+        let upright = normal(triangle);
+        let mut smallest = 1.0;
+        self.tree.query_box(&hull, |p| {
+            let body = &self.bodies[p];
+            for slab in 0..2 {
+                let cosine = body.prism.smallest_cosine(slab, upright);
+                let may_lower = smallest > floor && cosine < smallest && body.slabs[slab].meets(&hull);
+                if may_lower && !body.is_apart(slab, triangle) {
+                    smallest = cosine;
+                }
+            }
+        });
+        smallest
+    }
 }
 
 impl Body {
@@ -103,9 +123,11 @@ impl Body {
 
     /// L4. The signs of the pillars decide nearly always.
     fn is_crossed_well(&self, slab: usize, triangle: [Point; 3]) -> bool {
-        if self.prism.is_crossed(slab, triangle) {
-            return true;
-        }
+        self.prism.is_crossed(slab, triangle) || self.is_apart(slab, triangle)
+    }
+
+    /// Whether a triangle and a slab have no area in common.
+    fn is_apart(&self, slab: usize, triangle: [Point; 3]) -> bool {
         let walls = self.prism.outer_walls();
         walls[slab].iter().any(|wall| is_outside(*wall, triangle)) || !self.prism.shares_area(slab, triangle)
     }
