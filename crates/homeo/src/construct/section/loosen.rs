@@ -34,7 +34,8 @@ const STEPS: [f64; 3] = [0.3, 0.1, 0.03];
 const LEAST_HOPE: f64 = -0.5;
 
 impl Simplification<'_> {
-    /// Loosens the surface and goes on collapsing edges, in turn, while that helps.
+    /// Loosens the surface and goes on collapsing edges, in turn, while that helps. Not to be used with a bound for the
+    /// error: flips do not keep to it.
     pub(super) fn loosen(&mut self, enough: usize, progress: &dyn Progress) {
         let mut idle = 0;
         while self.info.end == SimplifyEnd::Exhausted && self.info.rounds < MOST_ROUNDS && idle < IDLE_ROUNDS {
@@ -78,39 +79,22 @@ impl Simplification<'_> {
     }
 
     fn spread_vertex(&mut self, vertex: u32) -> bool {
-        let ring = self.editor.surface.neighbours(vertex);
-        let centre = sum(ring.iter().map(|&v| self.editor.surface.point(v))).map(|x| x / ring.len() as f64);
-        let here = self.editor.surface.point(vertex);
-        [1.0, 0.5, 0.25].into_iter().any(|share| {
-            let place = between(here, centre, share);
-            let error = self.quadrics[vertex as usize].distance(relative(place, self.origin));
-            let is_done = error <= self.largest_error && self.editor.shift(vertex, place);
-            if is_done {
-                self.info.largest_error = self.info.largest_error.max(error);
-            }
-            is_done
-        })
+        let surface = &self.editor.surface;
+        let (here, ring) = (surface.point(vertex), surface.neighbours(vertex));
+        let centre = mean(&ring.iter().map(|&v| surface.point(v)).collect::<Vec<_>>());
+        [1.0, 0.5, 0.25].into_iter().any(|share| self.shift(vertex, between(here, centre, share)))
     }
 
     fn move_vertex(&mut self, vertex: u32) -> bool {
-        let (editor, quadric) = (&self.editor, self.quadrics[vertex as usize]);
-        let is_allowed = |place: Point| quadric.distance(relative(place, self.origin)) <= self.largest_error;
-        let change = editor.shift_change(vertex, editor.surface.point(vertex));
-        let Some(change) = change else { return false };
+        let editor = &self.editor;
+        let Some(change) = editor.shift_change(vertex, editor.surface.point(vertex)) else { return false };
         let least = editor.steepness(&change, -1.0) + LEAST_GAIN;
-        let mut better = Vec::new();
-        for place in editor.places(vertex).into_iter().filter(|&place| is_allowed(place)) {
-            let value = editor.steepness(&Change { moved: Some((vertex, place)), ..change.clone() }, least);
-            if value > least {
-                better.push((value, place));
-            }
-        }
+        let steepness_at =
+            |place: Point| editor.steepness(&Change { moved: Some((vertex, place)), ..change.clone() }, least);
+        let places = editor.places(vertex).into_iter().map(|place| (steepness_at(place), place));
+        let mut better: Vec<(f64, Point)> = places.filter(|(steepness, _)| *steepness > least).collect();
         better.sort_by(|one, other| other.0.total_cmp(&one.0));
-        let place = better.into_iter().map(|(_, place)| place).find(|&place| self.editor.shift(vertex, place));
-        if let Some(place) = place {
-            self.info.largest_error = self.info.largest_error.max(quadric.distance(relative(place, self.origin)));
-        }
-        place.is_some()
+        better.into_iter().any(|(_, place)| self.shift(vertex, place))
     }
 
     /// Collapses an edge between free vertices into a place that is looked for, if there is one. Returns the error there.
@@ -118,11 +102,20 @@ impl Simplification<'_> {
         if [a, b].map(|v| self.editor.rank(v)) != [Rank::Free; 2] {
             return None;
         }
+        let place = self.editor.roomy_place(a, b)?;
         let sum = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
-        let (origin, most) = (self.origin, self.largest_error);
-        let error = |place: Point| sum.distance(relative(place, origin));
-        let place = self.editor.roomy_place(a, b, |place| error(place) <= most)?;
-        self.editor.collapse(a, b, Target::At(place)).then(|| error(place))
+        let is_done = self.editor.collapse(a, b, Target::At(place));
+        is_done.then(|| sum.distance(relative(place, self.origin)))
+    }
+
+    /// Moves a vertex if that leaves a section.
+    fn shift(&mut self, vertex: u32, place: Point) -> bool {
+        let is_done = self.editor.shift(vertex, place);
+        if is_done {
+            let error = self.quadrics[vertex as usize].distance(relative(place, self.origin));
+            self.info.largest_error = self.info.largest_error.max(error);
+        }
+        is_done
     }
 }
 
@@ -162,7 +155,7 @@ impl Editor<'_> {
     fn places(&self, vertex: u32) -> Vec<Point> {
         let here = self.surface.point(vertex);
         let ring: Vec<Point> = self.surface.neighbours(vertex).into_iter().map(|v| self.surface.point(v)).collect();
-        let centre = sum(ring.iter().copied()).map(|x| x / ring.len() as f64);
+        let centre = mean(&ring);
         let mut places: Vec<Point> = [here, centre].into_iter().filter_map(|p| self.on_middle(p)).collect();
         places.extend([centre, between(here, centre, 0.5)]);
         let (length, axes) = self.frame(here, &ring, &self.surface.around[vertex as usize]);
@@ -174,7 +167,7 @@ impl Editor<'_> {
 
     /// A place into which an edge between free vertices can be collapsed as far as pillars are concerned: the middle, or
     /// what a search from there finds, step by step to where the triangles are steeper.
-    fn roomy_place(&self, a: u32, b: u32, is_allowed: impl Fn(Point) -> bool) -> Option<Point> {
+    fn roomy_place(&self, a: u32, b: u32) -> Option<Point> {
         let middle = between(self.surface.point(a), self.surface.point(b), 0.5);
         let mut change = self.collapse_change(a, b, Target::At(middle))?;
         let value = |change: &mut Change, place: Point, floor: f64| {
@@ -183,7 +176,7 @@ impl Editor<'_> {
         };
         let start = [Some(middle), self.on_middle(middle), self.on_source(middle)];
         let (mut best, mut here) = (LEAST_HOPE, None);
-        for place in start.into_iter().flatten().filter(|&place| is_allowed(place)) {
+        for place in start.into_iter().flatten() {
             let steepness = value(&mut change, place, best);
             if steepness > best {
                 (best, here) = (steepness, Some(place));
@@ -197,7 +190,7 @@ impl Editor<'_> {
                 if best > 0.0 {
                     return Some(here);
                 }
-                let steepness = if is_allowed(place) { value(&mut change, place, best) } else { best };
+                let steepness = value(&mut change, place, best);
                 if steepness > best {
                     (best, here) = (steepness, place);
                 }
@@ -219,6 +212,10 @@ impl Editor<'_> {
 
 fn sum(points: impl Iterator<Item = Point>) -> Point {
     points.fold([0.0; 3], |sum, p| std::array::from_fn(|i| sum[i] + p[i]))
+}
+
+fn mean(points: &[Point]) -> Point {
+    sum(points.iter().copied()).map(|x| x / points.len().max(1) as f64)
 }
 
 /// The six places at a distance along axes.

@@ -24,7 +24,8 @@ pub struct SimplifyParams {
     /// Stop when no more than this many triangles are left; 0 for as few as possible.
     pub triangles: usize,
     /// No vertex is put where the root of the mean squared distance to the planes of the triangles gathered in it is
-    /// larger, in units of length. An estimate of how far the surface moves, not a bound.
+    /// larger, in units of length. An estimate of how far the surface moves, not a bound. With it the surface is not
+    /// loosened where no edge can be collapsed: flips do not keep to an error.
     pub largest_error: Option<f64>,
     /// Edges are kept as chains if the normals of their triangles differ by more than this angle, in radians.
     pub feature_angle: Option<f64>,
@@ -76,7 +77,8 @@ pub struct SimplifyInfo {
 /// When `start` is no section of the shell, or a parameter is out of range.
 ///
 /// # Complexity
-/// `O(n log n)` comparisons, and exact checks proportional to the attempts; with texture also an exact evaluation of the
+/// `O(n log n)` comparisons, and exact checks proportional to the attempts; where no edge can be collapsed any more up to
+/// 30 rounds of attempts at all edges and vertices that are left. With texture also an exact evaluation of the
 /// shell's map for each vertex that moves.
 ///
 /// # References
@@ -129,7 +131,9 @@ pub fn simplify(
     let first_triangles = editor.surface.count;
     let mut work = Simplification::new(editor, params.largest_error.unwrap_or(f64::INFINITY));
     work.run(params.triangles, progress);
-    work.loosen(params.triangles, progress);
+    if params.largest_error.is_none() {
+        work.loosen(params.triangles, progress);
+    }
     let info = SimplifyInfo {
         first_triangles,
         triangles: work.editor.surface.count,

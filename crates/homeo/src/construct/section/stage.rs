@@ -132,3 +132,36 @@ impl Body {
         walls[slab].iter().any(|wall| is_outside(*wall, triangle)) || !self.prism.shares_area(slab, triangle)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::construct::shell::{ShellParams, build};
+    use crate::input::SourceMesh;
+    use crate::progress::Silent;
+    use homeo_core::mesh::SimplicialComplex;
+
+    #[test]
+    fn steepness_tells_triangles_from_those_turned_over() {
+        let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let complex = SimplicialComplex::from_indices(4, &triangles).expect("a surface");
+        let source = SourceMesh::new(positions.clone(), complex);
+        let (shell, _) = build(&source, &ShellParams::default(), &Silent).expect("a shell");
+        let stage = Stage::new(shell.parts());
+        for corners in triangles {
+            let [a, b, c] = corners.map(|v| positions[v as usize]);
+            assert_eq!(stage.check([a, b, c]), Ok(()));
+            let steepness = stage.steepness([a, b, c], -1.0);
+            assert!(steepness > 0.0 && steepness < 1.0, "{steepness}");
+            // A floor below it changes nothing, one above it is not exceeded.
+            assert_eq!(stage.steepness([a, b, c], 0.5 * steepness), steepness);
+            assert!(stage.steepness([a, b, c], 0.5 + 0.5 * steepness) <= 0.5 + 0.5 * steepness);
+            assert_eq!(stage.check([a, c, b]), Err(Fault::Crossing));
+            assert!(stage.steepness([a, c, b], -1.0) < 0.0);
+        }
+        // Far away no pillar has to cross it.
+        let far = positions[1..].iter().map(|p| p.map(|x| x + 10.0)).collect::<Vec<_>>();
+        assert_eq!(stage.steepness([far[0], far[1], far[2]], -1.0), 1.0);
+    }
+}
