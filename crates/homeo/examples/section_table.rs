@@ -3,7 +3,7 @@
 //! Usage: `cargo run --release -p homeo --example section_table -- MESH [FEATURE_DEGREES] [FACTORS]`
 //!
 //! `FACTORS` are the lengths, relative to the mean length of edges, with commas between them: `0.5,1,2` unless said
-//! otherwise. Without features give 180 for their angle.
+//! otherwise; none, as `""`, to simplify only. Without features give 180 for their angle.
 //!
 //! Prints rows of a Markdown table: mesh, operation, triangles before and after, processor seconds (wall seconds where the
 //! system does not tell), whether the independent checker certifies the result as a section of the same shell, pairs of

@@ -86,6 +86,39 @@ fn what_cannot_become_simpler_is_still_a_section() {
 }
 
 #[test]
+fn loosened_surfaces_are_sections_and_become_simpler() {
+    for source in [torus(32, 16, 5.0), turned_box(6), half_torus()] {
+        let shell = built(&source);
+        // With a bound for the error nothing is loosened, and this one does not bind.
+        let params = SimplifyParams { largest_error: Some(f64::MAX), ..fewer(0) };
+        let (_, collapsed) = simplify(&shell, &source.clone().into(), &params, &Silent).expect("a section");
+        assert_eq!([collapsed.rounds, collapsed.flips, collapsed.moves], [0; 3]);
+        let (section, info) = simplify(&shell, &source.clone().into(), &fewer(0), &Silent).expect("a section");
+        assert!(info.rounds > 1 && info.flips > 0 && info.moves > 0, "{info:?}");
+        assert!(info.triangles < collapsed.triangles, "{info:?}, without {collapsed:?}");
+        assert_eq!(info.first_triangles - info.triangles, 2 * info.collapses);
+        assert_eq!(info.triangles, section.surface.complex().cell_count());
+        assert_eq!(boundary(&section.surface), boundary(&source));
+        assert_section(&shell, &section.surface);
+    }
+}
+
+#[test]
+fn texture_stays_embedded_when_a_surface_is_loosened() {
+    let source = torus(32, 16, 3.0);
+    let shell = built(&source);
+    let texture = square_texture(32, 16);
+    let [a, b, c] = places(&texture)[0];
+    let sign = orient2d(a, b, c);
+    let start = TexturedSurface { surface: source, texture: Some(texture) };
+    let (section, info) = simplify(&shell, &start, &fewer(0), &Silent).expect("a section");
+    assert!(info.rounds > 1 && info.flips > 0 && info.moves > 0 && info.refusals.texture > 0, "{info:?}");
+    assert_section(&shell, &section.surface);
+    assert_embedded(section.texture.as_ref().expect("a texture"), sign);
+    assert_two_crossing_circles(&section);
+}
+
+#[test]
 fn remeshed_surfaces_are_sections() {
     for source in [torus(16, 9, 3.0), turned_box(4), half_torus(), twisted_cubes()] {
         let shell = built(&source);
@@ -428,7 +461,8 @@ fn results_do_not_depend_on_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| {
             let start = source.clone().into();
-            let (coarse, _) = simplify(&shell, &start, &fewer(60), &Silent).expect("a section");
+            let (coarse, info) = simplify(&shell, &start, &fewer(0), &Silent).expect("a section");
+            assert!(info.rounds > 0 && info.moves > 0, "{info:?}");
             let params = RemeshParams { iterations: 2, ..RemeshParams::with_edge_length(0.2) };
             let (fine, _) = remesh(&shell, &start, &params, &Silent).expect("a section");
             [coarse, fine].map(|section| (section.surface.positions().to_vec(), indices(&section.surface)))

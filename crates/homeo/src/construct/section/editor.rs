@@ -70,7 +70,7 @@ pub(super) struct Editor<'a> {
     pub creases: Creases,
     pub atlas: Option<Atlas>,
     pub refusals: Refusals,
-    stage: Stage,
+    pub stage: Stage,
 }
 
 impl<'a> Editor<'a> {
@@ -96,6 +96,11 @@ impl<'a> Editor<'a> {
     /// The point of the source on the pillar line of a point; rounded.
     pub fn on_source(&self, point: Point) -> Option<Point> {
         self.shell.to_source(point).ok().map(|found| found.point)
+    }
+
+    /// The point of the middle surface on the pillar line of a point; rounded.
+    pub fn on_middle(&self, point: Point) -> Option<Point> {
+        self.shell.to_middle(point).ok().map(|found| found.point)
     }
 
     /// The texture index of a vertex in a triangle; 0 without texture.
@@ -128,7 +133,7 @@ impl<'a> Editor<'a> {
         true
     }
 
-    fn points(&self, change: &Change, face: &Face) -> [Point; 3] {
+    pub fn points(&self, change: &Change, face: &Face) -> [Point; 3] {
         face.corners.map(|v| match change.moved {
             Some((moved, place)) if moved == v => place,
             _ => self.surface.point(v),

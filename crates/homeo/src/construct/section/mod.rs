@@ -40,6 +40,7 @@
 
 mod atlas;
 mod editor;
+mod loosen;
 mod operations;
 mod outline;
 mod quadric;

@@ -40,7 +40,7 @@ impl Editor<'_> {
         is_done
     }
 
-    fn collapse_change(&self, gone: u32, kept: u32, target: Target) -> Option<Change> {
+    pub fn collapse_change(&self, gone: u32, kept: u32, target: Target) -> Option<Change> {
         if !self.surface.can_collapse(gone, kept) {
             return None;
         }
@@ -102,7 +102,7 @@ impl Editor<'_> {
         self.apply(change)
     }
 
-    fn flip_change(&self, a: u32, b: u32) -> Option<Change> {
+    pub fn flip_change(&self, a: u32, b: u32) -> Option<Change> {
         let [left, right] = self.surface.both_sides(a, b)?;
         let (c, d) = (self.surface.third(left, a, b)?, self.surface.third(right, a, b)?);
         let valence = |v: u32| self.surface.neighbours(v).len();
@@ -176,11 +176,16 @@ impl Editor<'_> {
 
     /// Moves a free vertex.
     pub fn shift(&mut self, vertex: u32, place: Point) -> bool {
+        let change = self.shift_change(vertex, place);
+        change.is_some_and(|change| self.apply(change))
+    }
+
+    pub fn shift_change(&self, vertex: u32, place: Point) -> Option<Change> {
         let old = self.surface.around[vertex as usize].clone();
-        let Some(&first) = old.first() else { return false };
+        let first = *old.first()?;
         let face = |&t: &u32| Face { corners: self.surface.triangles[t as usize], marks: self.marks(t), parent: t };
         let new = old.iter().map(face).collect();
         let marking = Marking::FromFirst(self.mark(first, vertex));
-        self.apply(Change { old, new, moved: Some((vertex, place)), marking, detours: Vec::new() })
+        Some(Change { old, new, moved: Some((vertex, place)), marking, detours: Vec::new() })
     }
 }

@@ -24,7 +24,8 @@ pub struct SimplifyParams {
     /// Stop when no more than this many triangles are left; 0 for as few as possible.
     pub triangles: usize,
     /// No vertex is put where the root of the mean squared distance to the planes of the triangles gathered in it is
-    /// larger, in units of length. An estimate of how far the surface moves, not a bound.
+    /// larger, in units of length. An estimate of how far the surface moves, not a bound. With it the surface is not
+    /// loosened where no edge can be collapsed: flips do not keep to an error.
     pub largest_error: Option<f64>,
     /// Edges are kept as chains if the normals of their triangles differ by more than this angle, in radians.
     pub feature_angle: Option<f64>,
@@ -51,6 +52,12 @@ pub struct SimplifyInfo {
     pub triangles: usize,
     /// Edges that were collapsed.
     pub collapses: usize,
+    /// How often flips, moves and collapses were done in turn, after the first collapses came to an end.
+    pub rounds: usize,
+    /// Edges that were flipped, to make further collapses possible.
+    pub flips: usize,
+    /// Vertices that were moved for the same reason, all rounds together.
+    pub moves: usize,
     /// Attempts that were refused.
     pub refusals: Refusals,
     /// The largest root of the mean squared distance at which a vertex was put.
@@ -70,7 +77,8 @@ pub struct SimplifyInfo {
 /// When `start` is no section of the shell, or a parameter is out of range.
 ///
 /// # Complexity
-/// `O(n log n)` comparisons, and exact checks proportional to the attempts; with texture also an exact evaluation of the
+/// `O(n log n)` comparisons, and exact checks proportional to the attempts; where no edge can be collapsed any more up to
+/// 30 rounds of attempts at all edges and vertices that are left. With texture also an exact evaluation of the
 /// shell's map for each vertex that moves.
 ///
 /// # References
@@ -123,6 +131,9 @@ pub fn simplify(
     let first_triangles = editor.surface.count;
     let mut work = Simplification::new(editor, params.largest_error.unwrap_or(f64::INFINITY));
     work.run(params.triangles, progress);
+    if params.largest_error.is_none() {
+        work.loosen(params.triangles, progress);
+    }
     let info = SimplifyInfo {
         first_triangles,
         triangles: work.editor.surface.count,
@@ -154,17 +165,20 @@ struct Candidate {
 /// An edge in the queue: the bits of its cost, which order as the costs do, its ends, and their versions.
 type Entry = Reverse<(u64, [u32; 2], [u32; 2])>;
 
-struct Simplification<'a> {
-    editor: Editor<'a>,
-    origin: Point,
-    quadrics: Vec<Quadric>,
+/// A simplification under way.
+pub(super) struct Simplification<'a> {
+    pub editor: Editor<'a>,
+    pub origin: Point,
+    pub quadrics: Vec<Quadric>,
     /// How often the quadric or the place of each vertex changed.
     versions: Vec<u32>,
     /// The neighbours with which each vertex was tried in vain since something round it changed.
     refused: Vec<Vec<u32>>,
     queue: BinaryHeap<Entry>,
-    largest_error: f64,
-    info: SimplifyInfo,
+    /// Whether collapses may look for a place.
+    is_thorough: bool,
+    pub largest_error: f64,
+    pub info: SimplifyInfo,
 }
 
 impl<'a> Simplification<'a> {
@@ -178,16 +192,30 @@ impl<'a> Simplification<'a> {
             versions: vec![0; count],
             refused: vec![Vec::new(); count],
             queue: BinaryHeap::new(),
+            is_thorough: false,
             largest_error,
             info: SimplifyInfo::default(),
         };
-        for [a, b] in work.editor.surface.edges() {
-            work.push(a, b);
-        }
+        work.push_all();
         work
     }
 
-    fn run(&mut self, enough: usize, progress: &dyn Progress) {
+    fn push_all(&mut self) {
+        for [a, b] in self.editor.surface.edges() {
+            self.push(a, b);
+        }
+    }
+
+    /// Forgets what was refused, and goes about further collapses more thoroughly.
+    pub fn start_anew(&mut self) {
+        self.queue.clear();
+        self.refused.iter_mut().for_each(Vec::clear);
+        self.is_thorough = true;
+        self.push_all();
+    }
+
+    /// Collapses edges until there are few enough triangles or none can be.
+    pub fn run(&mut self, enough: usize, progress: &dyn Progress) {
         while self.editor.surface.count > enough {
             if progress.is_cancelled() {
                 self.info.end = SimplifyEnd::Cancelled;
@@ -211,11 +239,14 @@ impl<'a> Simplification<'a> {
             editor.collapse(candidate.gone, candidate.kept, candidate.target)
         };
         let candidates = self.candidates(a, b);
-        match candidates.into_iter().find(|candidate| is_done(candidate, &mut self.editor)) {
-            Some(candidate) => {
+        let done = candidates.into_iter().find(|candidate| is_done(candidate, &mut self.editor));
+        let done = done.map(|candidate| (candidate.error, candidate.gone, candidate.kept));
+        let somewhere = |work: &mut Self| work.collapse_somewhere(a, b).map(|error| (error, a, b));
+        match done.or_else(|| if self.is_thorough { somewhere(self) } else { None }) {
+            Some((error, gone, kept)) => {
                 self.info.collapses += 1;
-                self.info.largest_error = self.info.largest_error.max(candidate.error);
-                self.settle(candidate.gone, candidate.kept);
+                self.info.largest_error = self.info.largest_error.max(error);
+                self.settle(gone, kept);
             }
             None => {
                 self.refused[a as usize].push(b);

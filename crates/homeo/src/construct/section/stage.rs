@@ -4,6 +4,7 @@ use homeo_core::predicate::is_degenerate_triangle;
 use homeo_core::spatial::{Aabb, Tree};
 
 use super::Fault;
+use super::shape::normal;
 use crate::construct::shell::prism::{Prism, is_inside_wall, is_outside, is_pinched, sides};
 use crate::map::ShellParts;
 
@@ -86,6 +87,25 @@ impl Stage {
         });
         outcome
     }
+
+    /// The smallest cosine of the angles between the normal of a triangle and the pillars that have to cross it, or at
+    /// most `floor` if it is not larger; rounded.
+    pub fn steepness(&self, triangle: [Point; 3], floor: f64) -> f64 {
+        let hull = Aabb::of(&triangle);
+        let upright = normal(triangle);
+        let mut smallest = 1.0;
+        self.tree.query_box(&hull, |p| {
+            let body = &self.bodies[p];
+            for slab in 0..2 {
+                let cosine = body.prism.smallest_cosine(slab, upright);
+                let may_lower = smallest > floor && cosine < smallest && body.slabs[slab].meets(&hull);
+                if may_lower && !body.is_apart(slab, triangle) {
+                    smallest = cosine;
+                }
+            }
+        });
+        smallest
+    }
 }
 
 impl Body {
@@ -103,10 +123,45 @@ impl Body {
 
     /// L4. The signs of the pillars decide nearly always.
     fn is_crossed_well(&self, slab: usize, triangle: [Point; 3]) -> bool {
-        if self.prism.is_crossed(slab, triangle) {
-            return true;
-        }
+        self.prism.is_crossed(slab, triangle) || self.is_apart(slab, triangle)
+    }
+
+    /// Whether a triangle and a slab have no area in common.
+    fn is_apart(&self, slab: usize, triangle: [Point; 3]) -> bool {
         let walls = self.prism.outer_walls();
         walls[slab].iter().any(|wall| is_outside(*wall, triangle)) || !self.prism.shares_area(slab, triangle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::construct::shell::{ShellParams, build};
+    use crate::input::SourceMesh;
+    use crate::progress::Silent;
+    use homeo_core::mesh::SimplicialComplex;
+
+    #[test]
+    fn steepness_tells_triangles_from_those_turned_over() {
+        let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let complex = SimplicialComplex::from_indices(4, &triangles).expect("a surface");
+        let source = SourceMesh::new(positions.clone(), complex);
+        let (shell, _) = build(&source, &ShellParams::default(), &Silent).expect("a shell");
+        let stage = Stage::new(shell.parts());
+        for corners in triangles {
+            let [a, b, c] = corners.map(|v| positions[v as usize]);
+            assert_eq!(stage.check([a, b, c]), Ok(()));
+            let steepness = stage.steepness([a, b, c], -1.0);
+            assert!(steepness > 0.0 && steepness < 1.0, "{steepness}");
+            // A floor below it changes nothing, one above it is not exceeded.
+            assert_eq!(stage.steepness([a, b, c], 0.5 * steepness), steepness);
+            assert!(stage.steepness([a, b, c], 0.5 + 0.5 * steepness) <= 0.5 + 0.5 * steepness);
+            assert_eq!(stage.check([a, c, b]), Err(Fault::Crossing));
+            assert!(stage.steepness([a, c, b], -1.0) < 0.0);
+        }
+        // Far away no pillar has to cross it.
+        let far = positions[1..].iter().map(|p| p.map(|x| x + 10.0)).collect::<Vec<_>>();
+        assert_eq!(stage.steepness([far[0], far[1], far[2]], -1.0), 1.0);
     }
 }
