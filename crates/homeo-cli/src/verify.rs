@@ -33,9 +33,9 @@ pub fn run(session: &Session, options: &VerifyArgs) -> Result<Answer> {
     let mut source = None;
     if let Some(mesh) = &options.source {
         let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
-        source = Some(match claim.kind.as_str() {
-            "composite-harmonic" => compare_domain(&bytes, mesh)?,
-            _ => compare(session, &bytes, mesh, requested)?,
+        source = Some(match is_planar(&claim) {
+            true => compare_domain(&bytes, mesh)?,
+            false => compare(session, &bytes, mesh, requested)?,
         });
     }
     session.fact("input", described(&claim, &bytes, &options.map));
@@ -44,6 +44,11 @@ pub fn run(session: &Session, options: &VerifyArgs) -> Result<Answer> {
         "source": source,
     });
     Ok(Answer::new(fields, words(&claim, options)))
+}
+
+/// Whether the map is one between planar domains.
+fn is_planar(claim: &Claim) -> bool {
+    matches!(claim.target.as_str(), "polygon" | "annulus" | "domain")
 }
 
 /// Says what the mesh is, as the field `source` has it; a mesh that the map is not about is a failure.
@@ -88,8 +93,10 @@ fn compare_domain(bytes: &[u8], path: &Path) -> Result<Value> {
 
 /// The counts of the source are among what was checked, but for shells and planar domains.
 fn described(claim: &Claim, bytes: &[u8], path: &Path) -> Value {
-    if let ("shell" | "composite-harmonic", Ok(map)) = (claim.kind.as_str(), read_map(bytes)) {
-        return proof::map_json(&map, path);
+    if claim.kind == "shell" || is_planar(claim) {
+        if let Ok(map) = read_map(bytes) {
+            return proof::map_json(&map, path);
+        }
     }
     let count = |what: &str| claim.checked.iter().find(|(name, _)| name.starts_with(what)).map(|&(_, n)| n);
     let cells = if matches!(claim.target.as_str(), "square" | "disk") { "triangles" } else { "tetrahedra" };
@@ -107,7 +114,7 @@ fn words(claim: &Claim, options: &VerifyArgs) -> String {
             [(options.weld, " --weld"), (options.triangulate, " --triangulate"), (options.orient, " --orient")];
         let asked: String = changed.iter().filter(|(is_asked, _)| *is_asked).map(|(_, option)| *option).collect();
         let after = if asked.is_empty() { asked } else { format!(", after{asked}") };
-        let what = if claim.kind == "composite-harmonic" { "polygon" } else { "mesh" };
+        let what = if is_planar(claim) { "polygon" } else { "mesh" };
         text.push_str(&format!("        bit for bit the {what} of {}{after}\n", path.display()));
     }
     text.push_str("\nlimits\n");

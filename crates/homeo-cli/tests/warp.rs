@@ -33,6 +33,54 @@ fn points_move_and_the_map_is_checked_again() {
     assert!(folder.text("star.html").contains("Certified"));
 }
 
+/// A hole turns; the same map with the same answers, however it is asked.
+#[test]
+fn mean_value_maps_are_certified_and_checked_again() {
+    let folder = folder();
+    let pair = "--pair testdata/polygons/hole_turned.json --method mean-value";
+    let line = format!("warp testdata/images/checker.png {pair} --map turned.homeo");
+    let report = folder.line(&format!("{line} -o a.png --threads 1 --json")).expect(0).json();
+    assert_eq!((&report["certificate"]["holds"], &report["target"]), (&true.into(), &"annulus".into()));
+    assert!(
+        report["quality"]["steps"].as_u64() > Some(1) && report["quality"]["least_determinant"].as_f64() > Some(0.0)
+    );
+    folder.line(&format!("{line} -o b.png --threads 2")).expect(0);
+    assert_eq!(folder.read("a.png"), folder.read("b.png"));
+    let line = "verify turned.homeo --source testdata/polygons/hole_turned.json --json";
+    let report = folder.line(line).expect(0).json();
+    assert_eq!(report["certificate"]["kind"], "composite-mean-value");
+    folder.write("points.csv", "x,y\n0.5,0.25\n-0.25,-0.5\n");
+    folder.line("eval turned.homeo --points points.csv -o images.csv").expect(0);
+    let back = folder.line("eval turned.homeo --points images.csv --inverse").expect(0).stdout;
+    let numbers: Vec<f64> = back.split(['\n', ',']).filter_map(|word| word.trim().parse().ok()).collect();
+    let wanted = [0.5, 0.25, -0.25, -0.5];
+    assert!(numbers.len() == 4 && numbers.iter().zip(wanted).all(|(x, y)| (x - y).abs() < 1e-9), "{back}");
+    let report = folder.line("eval turned.homeo --points points.csv --exact -o d.csv --json").expect(3).json();
+    assert_eq!(report["error"]["code"], "no-exact-images");
+    folder.line("report turned.homeo -o turned.html").expect(0);
+    assert!(folder.text("turned.html").contains("Certified"));
+    // On a straight way the hole does not turn by more than a half turn.
+    let line = format!("warp points.csv {pair} --path straight --turn 400 -o c.csv --json");
+    assert_eq!(folder.line(&line).expect(4).json()["error"]["code"], "no-map");
+    assert!(!folder.path("c.csv").exists());
+}
+
+#[test]
+fn holes_turn_in_every_frame_of_a_morph() {
+    let folder = folder();
+    let line =
+        "morph testdata/images/checker.png --pair testdata/polygons/hole_turned.json --turn 417 --frames 5 -o f.json";
+    let report = folder.line(&format!("{line} --json")).expect(0).json();
+    assert_eq!(report["quality"]["path"], "turning");
+    let frames: serde_json::Value = serde_json::from_str(&folder.text("f.json")).unwrap();
+    let angle = |frame: usize| {
+        let place = |k: usize| frames["frames"][frame][1][0][k].as_f64().unwrap();
+        place(1).atan2(place(0)).to_degrees()
+    };
+    let turns: Vec<f64> = (1..5).map(|frame| (angle(frame) - angle(frame - 1)).rem_euclid(360.0)).collect();
+    assert!(turns.iter().all(|turn| (turn - turns[0]).abs() < 1e-9) && turns[0] > 90.0, "{turns:?}");
+}
+
 #[test]
 fn optimized_middles_are_certified_too() {
     let folder = folder();

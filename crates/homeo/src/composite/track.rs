@@ -119,7 +119,7 @@ fn plain_value(step: &Step, at: Point2) -> Option<(Point2, [Point2; 2])> {
         // Gradients: (1 + t^2) / 2 times that of the angle, and `a / r^3` of `1 / r`.
         let rate = 0.5 + 0.5 * t * t;
         let (near, far) = (inverse * inverse, other * other);
-        let turned = [a[1] * near - b[1] * far, b[0] * far - a[0] * near].map(|x| rate * x);
+        let turned = [b[1] * far - a[1] * near, a[0] * near - b[0] * far].map(|x| rate * x);
         let shares = [(inverse, a, near, step.images[i]), (other, b, far, step.images[next as usize])];
         for (inverse, vector, square, image) in shares {
             let weight = t * inverse;
@@ -170,7 +170,8 @@ mod tests {
         let (map, _) =
             CompositeMap::build(&TurningPath::between(&pair, &[]).unwrap(), &PartitionParams::default(), &Silent)
                 .unwrap();
-        let (mut inside, mut outside) = (0, 0);
+        let (mut inside, mut outside, mut by_search) = (0, 0, 0);
+        let mut track = Track::new(&map);
         for row in 0..40 {
             let points: Vec<Point2> =
                 (0..160).map(|k| [f64::from(k) * 0.03 - 2.4, f64::from(row) * 0.11 - 2.2]).collect();
@@ -182,6 +183,7 @@ mod tests {
                     outside += 1;
                     continue;
                 };
+                by_search += usize::from(track.search(point).is_some());
                 let proved = map.inverse(point).unwrap();
                 let miss = (0..2).map(|k| (found[k] - proved.point[k]).abs()).fold(0.0, f64::max);
                 assert!(miss < 1e-8 + proved.radius, "{point:?}: {found:?}, not {proved:?}");
@@ -189,5 +191,6 @@ mod tests {
             }
         }
         assert!(inside > 2000 && outside > 2000, "{inside} {outside}");
+        assert!(by_search * 100 > inside * 99, "the search fails for {} of {inside}", inside - by_search);
     }
 }
