@@ -291,9 +291,7 @@ impl PlanarBijection for CompositeMap {
     }
 
     fn forward_along(&self, points: &[Point2], images: &mut [Option<Point2>]) {
-        for (image, &point) in images.iter_mut().zip(points) {
-            *image = track::image(self, point);
-        }
+        images.iter_mut().zip(track::images(self, points)).for_each(|(image, found)| *image = found);
     }
 
     /// By Newton's method from the point before.
