@@ -105,7 +105,7 @@ impl Verb {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  homeo info testdata/meshes/spot.mesh --json")]
 pub struct InfoArgs {
-    /// OBJ, PLY, STL, OFF; MSH, MEDIT, VTK, VTU; JSON facets, polygons or gluings; PNG, JPEG
+    /// OBJ, PLY, STL, OFF; MSH, MEDIT, VTK, VTU; JSON facets, polygons or gluings; SVG; PNG, JPEG
     #[arg(value_name = "MESH")]
     pub input: PathBuf,
     /// Look for triangles that meet where they should not (always done where a ball is to be decided)
@@ -482,7 +482,7 @@ pub struct ReportArgs {
   homeo warp testdata/meshes/spot.mesh --from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj -o twisted.vtu
 
 Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is
-{\"source\": ..., \"target\": ...}. Vertices correspond by number. What lies outside the target becomes
+{\"source\": ..., \"target\": ...}. Or they are the shapes of an SVG drawing, in its order, in pixels. Vertices correspond by number. What lies outside the target becomes
 transparent. With --landmarks the map is affine on the triangles between them; landmarks whose triangles
 turn over would fold the picture and are refused by name. The map's certificate is checked before anything is written; `homeo verify` checks it again.")]
 pub struct WarpArgs {
@@ -577,7 +577,7 @@ pub struct MorphArgs {
 #[command(after_help = "Example:
   homeo blend testdata/polygons/ellipse.json testdata/polygons/bean.json --frames 9 -o blend.svg
 
-Curves are JSON lists [[x, y], ...] of samples, dense ones and as many as one likes; the first ones correspond.
+Curves are JSON lists [[x, y], ...] of samples, or a path of an SVG drawing, dense ones and as many as one likes; the first ones correspond.
 Every curve between is closed; whether it meets itself is tested exactly, and said.")]
 pub struct BlendArgs {
     /// The first curve

@@ -33,6 +33,28 @@ fn points_move_and_the_map_is_checked_again() {
     assert!(folder.text("star.html").contains("Certified"));
 }
 
+#[test]
+fn drawings_are_polygons_too() {
+    let folder = folder();
+    folder
+        .write("a.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"><path d=\"M10 10h90v90h-90z\"/></svg>")
+        .write("b.svg", "<svg><g transform=\"translate(10 0)\"><polygon points=\"0,10 90,10 40,40 0,100\"/></g></svg>")
+        .write("a.json", "[[10,10],[100,10],[100,100],[10,100]]")
+        .write("b.json", "[[10,10],[100,10],[50,40],[10,100]]");
+    for name in ["svg", "json"] {
+        let line =
+            format!("warp testdata/images/checker.png --from a.{name} --to b.{name} -o {name}.png --map {name}.homeo");
+        folder.line(&line).expect(0);
+    }
+    assert_eq!(folder.read("svg.png"), folder.read("json.png"));
+    folder.line("verify svg.homeo --source a.svg").expect(0);
+    let report = folder.line("info b.svg --json").expect(0).json();
+    assert_eq!((&report["kind"], &report["vertices"]), (&"polygon".into(), &4.into()));
+    folder.write("text.svg", "<svg><text>no shape</text></svg>");
+    let report = folder.line("info text.svg --json").expect(3).json();
+    assert!(report["error"]["message"].as_str().unwrap().contains("no path"), "{report}");
+}
+
 /// A hole turns; the same map with the same answers, however it is asked.
 #[test]
 fn mean_value_maps_are_certified_and_checked_again() {

@@ -6,10 +6,12 @@
 use std::f64::consts::TAU;
 use std::time::Instant;
 
+use homeo::composite::{CompositeMap, triangulate};
 use homeo::construct::harmonic::{HarmonicParams, harmonic_map};
+use homeo::map::PlanarBijection;
 use homeo::progress::Silent;
 use homeo::warp::{Filter, Placement, Raster, apply_field, backward_field};
-use homeo_core::planar::{DomainPair, Point2};
+use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 
 const WIDTH: usize = 3840;
 const HEIGHT: usize = 2160;
@@ -58,4 +60,37 @@ fn main() {
             println!("{sampled:8.3}  ready warp applied, {filter:?}, 3 channels of 8 bits");
         }
     }
+    composite();
+}
+
+/// Composite mean value maps: images of all pixels of a square picture by many steps, and of points of a large cage.
+fn composite() {
+    for (n, steps, side) in [(20, 100, 4096), (200, 1, 1000), (200, 10, 1000)] {
+        let domain = |k: usize| PlanarDomain::new(cage(n, 0.04 * k as f64 / steps as f64)).expect("a domain");
+        let domains: Vec<PlanarDomain> = (0..=steps).map(domain).collect();
+        let tilings = domains[..steps].iter().map(|domain| triangulate(domain).expect("triangles")).collect();
+        let map = CompositeMap::from_domains(domains, tilings).expect("a map");
+        let points: Vec<Point2> = (0..side * side)
+            .map(|k| [(k % side) as f64 * 3840.0 / side as f64, (k / side) as f64 * 2160.0 / side as f64])
+            .collect();
+        let mut images = vec![None; points.len()];
+        let (seconds, ()) = least_of(1, || map.forward_along(&points, &mut images));
+        let inside = images.iter().flatten().count();
+        // The floor: one root and one division for each vertex and step.
+        let sights = inside as f64 * (n * steps) as f64;
+        let (floor, _) = least_of(3, || roots_and_divisions(20_000_000));
+        println!(
+            "{seconds:8.3}  images of {inside} points by {steps} steps of a {n}-gon (floor {:.3})",
+            floor * sights / 20e6 / rayon::current_num_threads() as f64
+        );
+    }
+}
+
+/// So many roots and divisions, on one core.
+fn roots_and_divisions(count: usize) -> f64 {
+    let mut lanes = [1.0f64, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+    for _ in 0..count / lanes.len() {
+        lanes.iter_mut().for_each(|x| *x = 1.0 / (*x + 1.0).sqrt() + 0.5);
+    }
+    std::hint::black_box(lanes.iter().sum())
 }

@@ -23,6 +23,12 @@ pub fn run(session: &Session, options: &InfoArgs) -> Result<Answer> {
     if ["png", "jpg", "jpeg"].contains(&extension.as_str()) {
         return image::describe(&read(session, path)?, path);
     }
+    if extension == "svg" {
+        session.fact("input", json!({"path": path.display().to_string()}));
+        let rings = crate::warp::polygons::rings(path)?;
+        let value = if rings.len() == 1 { json!(rings[0]) } else { json!({"outer": rings[0], "holes": rings[1..]}) };
+        return polygons::describe(session, &value, path);
+    }
     if Format::of_path(path) == Some(Format::Json) {
         let bytes = read(session, path)?;
         let value: Value = serde_json::from_slice(&bytes)

@@ -103,6 +103,9 @@ fn collect(value: &Value, name: &str, rings: &mut Vec<(String, Vec<Point>)>) -> 
             collect(inside, &name, rings)?;
         }
     }
+    for (number, hole) in value.get("holes").and_then(Value::as_array).into_iter().flatten().enumerate() {
+        collect(hole, format!("{name} hole {number}").trim_start(), rings)?;
+    }
     if rings.is_empty() { Err(format!("{name} holds no polygon")) } else { Ok(()) }
 }
 

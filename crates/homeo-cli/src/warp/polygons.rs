@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use homeo_core::planar::{DomainPair, PairError, PlanarDomain, Point2, RingPair, read_pair, read_rings};
+use homeo_core::planar::{DomainPair, PairError, PlanarDomain, Point2, RingPair, read_pair, read_rings, read_svg};
 use serde_json::Value;
 
 use crate::args::PolygonArgs;
@@ -13,7 +13,6 @@ pub fn read(options: &PolygonArgs) -> Result<(DomainPair, Option<f64>)> {
     let (rings, path) = match (&options.pair, &options.from, &options.to) {
         (Some(path), _, _) => (pair(path)?, path),
         (None, Some(from), Some(to)) => {
-            let rings = |path: &Path| read_rings(&json(path)?).map_err(|e| syntax(path, &e.to_string()));
             (RingPair { source: rings(from)?, target: rings(to)?, turn_degrees: None }, from)
         }
         _ => return Err(Failure::usage("give --pair, or --from and --to: the polygons before and after")),
@@ -25,17 +24,16 @@ pub fn read(options: &PolygonArgs) -> Result<(DomainPair, Option<f64>)> {
 
 /// The source of a pair, or a polygon by itself. Like those of pairs, its rings may run either way round.
 pub fn source(path: &Path) -> Result<PlanarDomain> {
-    let value = json(path)?;
-    let rings = match value.get("source") {
-        Some(_) => pair(path)?.source,
-        None => read_rings(&value).map_err(|e| syntax(path, &e.to_string()))?,
+    let rings = match is_drawing(path) || json(path)?.get("source").is_none() {
+        true => rings(path)?,
+        false => pair(path)?.source,
     };
     Ok(DomainPair::new(rings.clone(), rings).map_err(|error| explain(path, &error))?.source)
 }
 
 /// A closed curve as a list of points; it may cross itself.
 pub fn curve(path: &Path) -> Result<Vec<Point2>> {
-    let mut rings = read_rings(&json(path)?).map_err(|e| syntax(path, &e.to_string()))?;
+    let mut rings = rings(path)?;
     match rings.pop() {
         Some(ring) if rings.is_empty() => Ok(ring),
         _ => {
@@ -47,6 +45,27 @@ pub fn curve(path: &Path) -> Result<Vec<Point2>> {
 /// The files that are read.
 pub fn paths(options: &PolygonArgs) -> Vec<&Path> {
     [&options.pair, &options.from, &options.to].into_iter().filter_map(|path| path.as_deref()).collect()
+}
+
+/// Curves of drawings become edges this near, as a part of the diagonal of their shape.
+const TOLERANCE: f64 = 1e-3;
+
+fn is_drawing(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
+}
+
+/// The rings of a file, JSON or SVG.
+pub fn rings(path: &Path) -> Result<Vec<Vec<Point2>>> {
+    let found = match is_drawing(path) {
+        true => read_svg(&text(path)?, TOLERANCE),
+        false => read_rings(&json(path)?),
+    };
+    found.map_err(|e| syntax(path, &e.to_string()))
+}
+
+fn text(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path)
+        .map_err(|e| Failure::input("cannot-open", format!("{} cannot be read: {e}", path.display())))
 }
 
 fn pair(path: &Path) -> Result<RingPair> {

@@ -7,10 +7,12 @@
 mod domain;
 mod meeting;
 mod read;
+mod svg;
 
 pub use domain::{DomainError, PlanarDomain, turn};
 pub use meeting::{EdgeId, meeting_edges};
 pub use read::{DomainPair, PairError, PolygonFileError, RingPair, read_pair, read_rings};
+pub use svg::read_svg;
 
 /// A point of the plane.
 pub type Point2 = [f64; 2];

@@ -5,10 +5,10 @@ use serde_json::Value;
 use super::{DomainError, PlanarDomain, Point2, turn};
 use crate::predicate::Sign;
 
-/// Why a JSON value holds no polygons.
+/// Why a JSON value or a drawing holds no polygons.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
-pub struct PolygonFileError(String);
+pub struct PolygonFileError(pub(super) String);
 
 /// The rings of a value: a list of points is one; an object has the outer ring as `outer`, a hole as `inner` or several
 /// as `holes`. Orders are kept as they are.
