@@ -106,11 +106,11 @@ pub fn bound_jacobian(
         return Err(TriangulationError::OtherCount { vertices, images: images.len() });
     }
     check_tiling(domain, tiling)?;
-    Ok(Step::new(domain, tiling, images.to_vec()).bound(limits, &|| false))
+    Ok(Step::new(domain, tiling, images.to_vec()).bound(limits, 0, &|| false).0)
 }
 
 /// Charts that are bounded before it is seen whether to go on: a fixed number, lest the answer depend on threads.
-const CHUNK: usize = 48;
+const CHUNK: usize = 16;
 /// Where charts are sampled before anything is proved: `s` and `λ`.
 const SAMPLES: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [0.5, 0.4], [1.0, 0.0], [1.0, 1.0]];
 
@@ -123,25 +123,36 @@ enum Outcome {
 
 impl Step {
     /// See [`bound_jacobian`]. `is_cancelled` is asked now and then; what was not reached by then is undecided.
-    pub(super) fn bound(&self, limits: &JacobianLimits, is_cancelled: &(dyn Fn() -> bool + Sync)) -> JacobianVerdict {
+    ///
+    /// Charts are bounded in chunks, that of number `first` before all others; also returned is which one ended the attempt.
+    /// A step that failed there fails there again if it is shortened by too little.
+    pub(super) fn bound(
+        &self,
+        limits: &JacobianLimits,
+        first: usize,
+        is_cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> (JacobianVerdict, usize) {
         if let Some((point, at_most)) = self.sampled_fold() {
-            return JacobianVerdict::Negative { point, at_most, boxes: 0 };
+            return (JacobianVerdict::Negative { point, at_most, boxes: 0 }, first);
         }
         let (mut least, mut boxes) = (f64::INFINITY, 0);
-        for chunk in self.charts.chunks(CHUNK) {
+        let chunks: Vec<&[Chart]> = self.charts.chunks(CHUNK).collect();
+        let others = (0..chunks.len()).filter(|&number| number != first);
+        for number in std::iter::once(first).filter(|&number| number < chunks.len()).chain(others) {
+            let chunk = chunks[number];
             let bounded: Vec<_> = chunk.par_iter().map(|chart| self.bound_chart(chart, limits, is_cancelled)).collect();
             boxes += bounded.iter().map(|(_, boxes)| u64::from(*boxes)).sum::<u64>();
             for ((outcome, _), chart) in bounded.into_iter().zip(chunk) {
                 match outcome {
                     Outcome::Positive(here) => least = least.min(here),
-                    Outcome::Negative(at) => return self.witnessed(chart, at, boxes),
+                    Outcome::Negative(at) => return (self.witnessed(chart, at, boxes), number),
                     Outcome::Undecided(at) => {
-                        return JacobianVerdict::Undecided { point: self.place(chart, at), boxes };
+                        return (JacobianVerdict::Undecided { point: self.place(chart, at), boxes }, number);
                     }
                 }
             }
         }
-        JacobianVerdict::Positive { least, boxes }
+        (JacobianVerdict::Positive { least, boxes }, first)
     }
 
     /// A point where the map is proved to fold, if one of some samples is such.

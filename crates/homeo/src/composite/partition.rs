@@ -120,9 +120,12 @@ pub(super) fn binary_partition(
     progress.stage("partition");
     let mut partition = Partition { stages: vec![Stage::at(path, 0.0)?], bounds: Vec::new(), boxes: [0; 2], tried: 0 };
     let mut ahead = vec![Stage::at(path, 1.0)?];
+    // Where the last attempt from the same domain failed.
+    let mut suspect = 0;
     while let (Some(next), Some(here)) = (ahead.last(), partition.stages.last()) {
         let (from, to) = (here.time, next.time);
-        let verdict = here.step_to(next).bound(&params.limits, &is_stopped);
+        let (verdict, chunk) = here.step_to(next).bound(&params.limits, suspect, &is_stopped);
+        suspect = chunk;
         if is_stopped() {
             return Err(PartitionError::Stopped(from, partition.bounds.len()));
         }
@@ -167,7 +170,7 @@ pub(super) fn given_partition(
     let mut partition = Partition { stages, bounds: Vec::new(), boxes: [0; 2], tried: times.len().saturating_sub(1) };
     for pair in partition.stages.windows(2) {
         let (from, to) = (pair[0].time, pair[1].time);
-        let verdict = pair[0].step_to(&pair[1]).bound(&params.limits, &is_stopped);
+        let (verdict, _) = pair[0].step_to(&pair[1]).bound(&params.limits, 0, &is_stopped);
         if is_stopped() {
             return Err(PartitionError::Stopped(from, partition.bounds.len()));
         }

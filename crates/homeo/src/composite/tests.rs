@@ -20,7 +20,7 @@ fn step(rings: Vec<Vec<Point2>>, images: &[Point2]) -> Step {
 }
 
 fn verdict(step: &Step) -> JacobianVerdict {
-    step.bound(&JacobianLimits::default(), &|| false)
+    step.bound(&JacobianLimits::default(), 0, &|| false).0
 }
 
 /// With a reflex vertex and one inside a straight side.
@@ -155,7 +155,7 @@ fn enclosures_hold_values_up_to_vertices_and_edges() {
 fn affine_maps_have_their_determinant() {
     let affine = |p: &Point2| [2.0 * p[0] - p[1] + 3.0, 0.5 * p[0] + p[1] - 7.0];
     let sharp = JacobianLimits { sharpness: 0.99, ..JacobianLimits::default() };
-    let verdict = |step: &Step| step.bound(&sharp, &|| false);
+    let verdict = |step: &Step| step.bound(&sharp, 0, &|| false).0;
     for rings in [vec![hook()], vec![square(2.0), hole(1.0)]] {
         let points: Vec<Point2> = rings.iter().flatten().copied().collect();
         let identity = verdict(&step(rings.clone(), &points));
