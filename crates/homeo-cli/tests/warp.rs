@@ -215,31 +215,6 @@ fn a_path_that_crosses_itself_is_refused() {
 }
 
 #[test]
-fn where_all_other_paths_cross_the_simple_one_is_taken() {
-    let folder = folder();
-    // A band that goes round to one side, and one that goes round to the other.
-    let band = |side: f64| {
-        let point = |i: usize, shift: f64| {
-            let (radius, angle) = (0.4 + 0.2 * i as f64 + shift, 0.8 * i as f64);
-            [side * radius * angle.cos(), radius * angle.sin()]
-        };
-        let mut ring: Vec<[f64; 2]> = (0..16).map(|i| point(i, 0.3)).collect();
-        ring.extend((0..16).rev().map(|i| point(i, -0.3)));
-        ring
-    };
-    let mut target = band(-1.0);
-    target.reverse();
-    target.rotate_left(11);
-    folder.write("pair.json", &serde_json::json!({"source": band(1.0), "target": target}).to_string());
-    let line = "morph testdata/images/checker.png --pair pair.json --frames 9 --triangles 500 -o m.json --json";
-    for other in ["angles", "straight", "turning"] {
-        folder.line(&format!("{line} --path {other}")).expect(4);
-    }
-    let report = folder.line(line).expect(0).json();
-    assert_eq!((&report["quality"]["path"], &report["quality"]["frames"]), (&"simple".into(), &9.into()));
-}
-
-#[test]
 fn curves_are_blended_and_closed() {
     let folder = folder();
     let line = "blend testdata/polygons/ellipse.json testdata/polygons/bean.json --frames 5";
