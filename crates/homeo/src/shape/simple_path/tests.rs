@@ -126,8 +126,8 @@ fn rings_with_a_hole_stay_rings() {
 fn ends_are_stored_and_place_and_size_do_not_matter() {
     let (source, target) = (comb(3), spiral(7, 1.2));
     let plain = SimplePath::between(&pair(source.clone(), target.clone())).unwrap();
-    assert_eq!(plain.at(0.0).unwrap(), [source.clone()]);
-    assert_eq!(plain.at(1.0).unwrap(), [target.clone()]);
+    assert_eq!(plain.at(0.0).unwrap(), std::slice::from_ref(&source));
+    assert_eq!(plain.at(1.0).unwrap(), std::slice::from_ref(&target));
     for t in [-1e-300, 1.0 + f64::EPSILON, f64::NAN] {
         assert!(matches!(plain.at(t), Err(ShapeError::OutsideTime { .. })));
     }
