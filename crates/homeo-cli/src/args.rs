@@ -606,7 +606,8 @@ pub enum MethodName {
 /// How a polygon becomes another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PathName {
-    /// The first that gives polygons which do not cross themselves: angles, straight, turning; with a hole turning first
+    /// The first that gives polygons which do not cross themselves: angles, straight, turning, simple; with a hole turning
+    /// first
     Auto,
     /// Every vertex on a straight line
     Straight,
@@ -614,6 +615,8 @@ pub enum PathName {
     Angles,
     /// Every ring turns about its middle, and changes straight in its turning frame
     Turning,
+    /// Polygons never cross themselves; one hole at most
+    Simple,
 }
 
 /// Where polygons lie on a picture.

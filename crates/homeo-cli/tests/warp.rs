@@ -279,6 +279,9 @@ fn a_path_that_crosses_itself_is_refused() {
     assert_eq!(report["error"]["code"], "no-path");
     assert!(report["error"]["message"].as_str().unwrap().contains("at time"), "{report}");
     assert!(!folder.path("m.gif").exists());
+    let simple = line.replace("straight", "simple");
+    let report = folder.line(&format!("{simple} --triangles 500")).expect(0).json();
+    assert_eq!((&report["quality"]["path"], &report["certificate"]["holds"]), (&"simple".into(), &true.into()));
 }
 
 #[test]

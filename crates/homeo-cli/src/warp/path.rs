@@ -1,6 +1,6 @@
 //! How one polygon becomes another: the ways that there are, in the order in which they are tried.
 
-use homeo::shape::{LengthsAndAngles, LinearPath, ShapePath, TurningPath};
+use homeo::shape::{LengthsAndAngles, LinearPath, ShapePath, SimplePath, TurningPath};
 use homeo_core::planar::DomainPair;
 
 use crate::args::PathName;
@@ -19,8 +19,9 @@ pub fn ways(pair: &DomainPair, name: PathName, turn: Option<f64>) -> Vec<Result<
         PathName::Straight => vec!["straight"],
         PathName::Angles => vec!["angles"],
         PathName::Turning => vec!["turning"],
-        PathName::Auto if pair.source.rings().len() > 1 => vec!["turning", "straight"],
-        PathName::Auto => vec!["angles", "straight", "turning"],
+        PathName::Simple => vec!["simple"],
+        PathName::Auto if pair.source.rings().len() > 1 => vec!["turning", "straight", "simple"],
+        PathName::Auto => vec!["angles", "straight", "turning", "simple"],
     };
     names.into_iter().map(|name| way(pair, name, turn).map_err(|error| format!("{name}: {error}"))).collect()
 }
@@ -35,6 +36,10 @@ fn way(pair: &DomainPair, name: &'static str, turn: Option<f64>) -> Result<Way, 
             let path = turning(pair, turn).map_err(|e| e.to_string())?;
             let turns = path.turns_in_degrees();
             Ok(Way { name, path: Box::new(path), turn: turns.get(1).map(|inner| inner - turns[0]) })
+        }
+        "simple" => {
+            let path = SimplePath::between(pair).map_err(|e| e.to_string())?;
+            Ok(Way { name, path: Box::new(path), turn: None })
         }
         _ => {
             let [source, target] = [&pair.source, &pair.target].map(|domain| domain.rings());

@@ -5,12 +5,13 @@
 //! | [`LinearPath`] | rings with corresponding vertices | edges parallel where they are parallel in both |
 //! | [`LengthsAndAngles`] | one ring with corresponding vertices | turning angles linear, lengths nearly so |
 //! | [`CurvatureBlend`] | two sampled closed curves | curvature nearly linear, length linear |
+//! | [`SimplePath`] | rings with corresponding vertices, one hole at most | shapes simple |
 //! | [`StraightPolyhedra`] | two polyhedra with the same triangles | edges parallel where they are parallel in both |
 //! | [`TurningPolyhedra`] | the same | rotations of triangles even, stretches linear, nearly so |
 //!
 //! *Source*: Schneider 2017, chapter 3; *differences* are with each path and in `docs/methods/shapes.md`.
-//! *Arithmetic*: floating point; only [`check_simple`] decides exactly, on the stored numbers. No path keeps shapes
-//! simple: [`first_not_simple`] looks.
+//! *Arithmetic*: floating point; [`check_simple`] decides exactly, on the stored numbers. Only [`SimplePath`] keeps shapes
+//! simple; on other paths [`first_not_simple`] looks.
 //!
 //! ```
 //! use homeo::shape::{LengthsAndAngles, LinearPath, ShapePath};
@@ -25,6 +26,8 @@
 
 mod blend;
 mod closing;
+mod combinations;
+mod compatible;
 mod curvature;
 mod lengths_and_angles;
 mod linear;
@@ -32,6 +35,7 @@ mod polyhedron;
 mod ring;
 mod rotation;
 mod simple;
+mod simple_path;
 mod turning;
 
 #[cfg(test)]
@@ -40,11 +44,13 @@ mod polyhedron_tests;
 mod tests;
 
 pub use blend::CurvatureBlend;
+pub use compatible::CompatibleError;
 pub use curvature::{CurvatureProfile, sample_closed};
 pub use lengths_and_angles::LengthsAndAngles;
 pub use linear::LinearPath;
 pub use polyhedron::{PolyhedronPath, PolyhedronPathError, StraightPolyhedra, TurningPolyhedra};
 pub use simple::{NotSimple, check_simple, first_not_simple};
+pub use simple_path::SimplePath;
 pub use turning::TurningPath;
 
 /// Shapes from a source to a target.
@@ -132,6 +138,31 @@ pub enum ShapeError {
         t: f64,
         /// What is left open, as a part of the perimeter.
         residual: f64,
+    },
+    /// More than one hole.
+    #[error("there are {count} holes; simple paths are made for one or none: take another path")]
+    TooManyHoles {
+        /// How many.
+        count: usize,
+    },
+    /// The shapes could not be triangulated alike.
+    #[error("the shapes could not be triangulated alike: {0}")]
+    NotTriangulated(#[from] CompatibleError),
+    /// The linear system was not solved.
+    #[error("the places of vertices at time {t} could not be solved for")]
+    Unsolved {
+        /// The time.
+        t: f64,
+    },
+    /// Rounding turned a triangle over.
+    #[error(
+        "rounding turned triangle {triangle} over at time {t}: take shapes that are less unlike, or with fewer vertices"
+    )]
+    TurnedOver {
+        /// The time.
+        t: f64,
+        /// The triangle.
+        triangle: usize,
     },
 }
 
