@@ -61,7 +61,7 @@ type Line = (String, Vec<[f64; 2]>);
 /// A star whose teeth turn by a quarter of one: figure 4.7 has such a thing.
 fn star(turn: f64) -> Vec<Point2> {
     let corner = |k: u32| {
-        let radius = if k % 2 == 0 { 1.0 } else { 0.5 };
+        let radius = if k.is_multiple_of(2) { 1.0 } else { 0.5 };
         let angle = TAU * (f64::from(k) / 10.0 + turn);
         [radius * angle.cos(), radius * angle.sin()]
     };

@@ -31,6 +31,7 @@ mod accurate;
 mod complex;
 mod face_mesh;
 mod face_view;
+mod gauss_kronrod;
 mod harmonic;
 mod maximum_entropy;
 mod maximum_entropy_polyhedron;
@@ -44,6 +45,7 @@ mod real;
 mod space;
 mod spatial;
 mod three_point;
+mod transfinite;
 pub(crate) mod vectors;
 mod weighted;
 
@@ -61,6 +63,7 @@ pub use positive::PositiveMeanValue;
 pub use space::{PolyhedronError, WachspressPolyhedron};
 pub use spatial::SpatialCoordinates;
 pub use three_point::{DiscreteHarmonic, ThreePoint, Wachspress};
+pub use transfinite::{ClosedCurve, TransfiniteComposite, TransfiniteError, TransfiniteMeanValue, TransfiniteParams};
 
 /// Coordinates of points with respect to the vertices of a planar domain, ring after ring.
 pub trait PlanarCoordinates: Send + Sync {
