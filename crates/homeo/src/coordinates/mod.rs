@@ -6,6 +6,7 @@
 //! | [`Wachspress`], [`DiscreteHarmonic`], [`ThreePoint`] | strictly convex polygons | no |
 //! | [`PositiveMeanValue`], [`MaximumEntropy`] | the closed domain | yes |
 //! | [`HarmonicCoordinates`] (approximate: see its page) | the closed domain | yes |
+//! | [`TransfiniteMeanValue`] (data along a closed curve; its own interface) | inside | no |
 //! | [`Cauchy`], [`Green`] (complex, with normals; their own interface) | inside | yes |
 //! | [`WachspressPolyhedron`] | convex polyhedra | no |
 //! | [`MeanValuePolyhedron`] | space, closed meshes of any genus | yes |

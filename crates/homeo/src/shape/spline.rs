@@ -141,8 +141,7 @@ fn basis(parameter: f64, n: usize) -> (usize, [[f64; 4]; 3]) {
 ///
 /// # Guarantee
 /// No point is farther from the spline than the tolerance times the length; how far is computed at the feet. Parts of the
-/// spline between feet may be farther from the ring. For one point after the other of the same ring the same numbers, with
-/// any number of threads.
+/// spline between feet may be farther from the ring. Nothing depends on the number of threads.
 ///
 /// # Errors
 /// Numbers of control points that do not fit, points that are no ring, points too sparse; or the tolerance was not reached:
