@@ -94,10 +94,10 @@ mod tests {
             ((piece.value[0] - 2.0 / f64::from(degree + 1)).abs(), piece.difference[0])
         };
         for degree in (0..=22).step_by(2) {
-            assert!(missed(degree).0 < 1e-15, "degree {degree}: {:?}", missed(degree));
+            assert!(missed(degree).0 < 1e-14, "degree {degree}: {:?}", missed(degree));
         }
-        assert!((0..=12).step_by(2).all(|degree| missed(degree).1 < 1e-15), "the inner rule has degree 13");
-        assert!(missed(14).1 > 1e-6 && missed(24).0 > 1e-14, "and no more: a control");
+        assert!((0..=12).step_by(2).all(|degree| missed(degree).1 < 1e-14), "the inner rule has degree 13");
+        assert!(missed(14).1 > 1e-6 && missed(24).0 > 1e-10, "and no more: a control");
     }
 
     #[test]
@@ -107,6 +107,6 @@ mod tests {
             |limit| integrate(&[-1.0, 0.1, 1.0], limit, peak, |p| p.difference[0], |all| all.difference[0] < 1e-10);
         let exact = 2.0 * 1e6f64.atan();
         assert!((run(200).value[0] - exact).abs() < 1e-10, "{:?}", run(200));
-        assert!(run(5).difference[0] > 1e-3, "five pieces are not enough, and this is seen");
+        assert!(run(5).difference[0] > 1e-8, "five pieces are not enough, and this is seen");
     }
 }
