@@ -6,6 +6,7 @@
 //! | [`Wachspress`], [`DiscreteHarmonic`], [`ThreePoint`] | strictly convex polygons | no |
 //! | [`PositiveMeanValue`], [`MaximumEntropy`] | the closed domain | yes |
 //! | [`HarmonicCoordinates`] (approximate: see its page) | the closed domain | yes |
+//! | [`TransfiniteMeanValue`] (data along a closed curve; its own interface) | inside | no |
 //! | [`Cauchy`], [`Green`] (complex, with normals; their own interface) | inside | yes |
 //! | [`WachspressPolyhedron`] | convex polyhedra | no |
 //! | [`MeanValuePolyhedron`] | space, closed meshes of any genus | yes |
@@ -31,6 +32,7 @@ mod accurate;
 mod complex;
 mod face_mesh;
 mod face_view;
+mod gauss_kronrod;
 mod harmonic;
 mod maximum_entropy;
 mod maximum_entropy_polyhedron;
@@ -44,6 +46,7 @@ mod real;
 mod space;
 mod spatial;
 mod three_point;
+mod transfinite;
 pub(crate) mod vectors;
 mod weighted;
 
@@ -61,6 +64,7 @@ pub use positive::PositiveMeanValue;
 pub use space::{PolyhedronError, WachspressPolyhedron};
 pub use spatial::SpatialCoordinates;
 pub use three_point::{DiscreteHarmonic, ThreePoint, Wachspress};
+pub use transfinite::{ClosedCurve, TransfiniteComposite, TransfiniteError, TransfiniteMeanValue, TransfiniteParams};
 
 /// Coordinates of points with respect to the vertices of a planar domain, ring after ring.
 pub trait PlanarCoordinates: Send + Sync {

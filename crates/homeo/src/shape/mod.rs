@@ -9,6 +9,8 @@
 //! | [`StraightPolyhedra`] | two polyhedra with the same triangles | edges parallel where they are parallel in both |
 //! | [`TurningPolyhedra`] | the same | rotations of triangles even, stretches linear, nearly so |
 //!
+//! [`fit_closed_spline`] makes a ring smooth: a closed cubic B-spline near its vertices.
+//!
 //! *Source*: Schneider 2017, chapter 3; *differences* are with each path and in `docs/methods/shapes.md`.
 //! *Arithmetic*: floating point; [`check_simple`] decides exactly, on the stored numbers. Only [`SimplePath`] keeps shapes
 //! simple; on other paths [`first_not_simple`] looks.
@@ -36,6 +38,7 @@ mod ring;
 mod rotation;
 mod simple;
 mod simple_path;
+mod spline;
 mod turning;
 
 #[cfg(test)]
@@ -51,6 +54,7 @@ pub use linear::LinearPath;
 pub use polyhedron::{PolyhedronPath, PolyhedronPathError, StraightPolyhedra, TurningPolyhedra};
 pub use simple::{NotSimple, check_simple, first_not_simple};
 pub use simple_path::SimplePath;
+pub use spline::{ClosedSpline, SplineError, SplineFit, SplineParams, fit_closed_spline};
 pub use turning::TurningPath;
 
 /// Shapes from a source to a target.
