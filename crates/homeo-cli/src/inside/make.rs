@@ -54,7 +54,13 @@ pub fn simplify(session: &Session, options: &SimplifyArgs, outputs: &mut Outputs
         let reached = options.to.map(|_| info.end == SimplifyEnd::Reached);
         if reached == Some(false) {
             let within = if options.error.is_some() { "shell with this error" } else { "shell" };
-            lines.add("ended", format!("no edge is left that could be collapsed in this {within}"));
+            lines.add(
+                "ended",
+                match info.end {
+                    SimplifyEnd::Cancelled => "cut short by the time limit".to_owned(),
+                    _ => format!("no edge is left that could be collapsed in this {within}"),
+                },
+            );
             let Refusals { links, shape, shell, texture } = info.refusals;
             lines.add(
                 "refused",

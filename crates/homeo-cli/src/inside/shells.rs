@@ -3,7 +3,8 @@
 use std::cell::Cell;
 
 use homeo::construct::section::{
-    Attempt, InShellError, SimplifiedInShell, SimplifyParams, TexturedSurface, shells_in_turn, simplify_in_shells,
+    Attempt, InShellError, SimplifiedInShell, SimplifyEnd, SimplifyParams, TexturedSurface, shells_in_turn,
+    simplify_in_shells,
 };
 use homeo::construct::shell::ShellParams;
 use homeo::progress::Progress;
@@ -86,14 +87,14 @@ pub fn tell(found: &SimplifiedInShell, lines: &mut Lines) {
 pub fn described(found: &SimplifiedInShell) -> Value {
     let described = |attempt: &Attempt| {
         let angle = (attempt.largest_angle.to_degrees() * 1e9).round() / 1e9;
-        match &attempt.outcome {
-            Ok(outcome) => {
-                json!({"largest_angle": angle, "prisms": outcome.prisms, "triangles": outcome.triangles, "error": null})
-            }
-            Err(error) => {
-                json!({"largest_angle": angle, "prisms": null, "triangles": null, "error": error.to_string()})
-            }
-        }
+        let outcome = attempt.outcome.as_ref();
+        json!({
+            "largest_angle": angle,
+            "prisms": outcome.ok().map(|outcome| outcome.prisms),
+            "triangles": outcome.ok().map(|outcome| outcome.triangles),
+            "cut_short": outcome.is_ok_and(|outcome| outcome.end == SimplifyEnd::Cancelled),
+            "error": outcome.err().map(ToString::to_string),
+        })
     };
     found.attempts.iter().map(described).collect()
 }
