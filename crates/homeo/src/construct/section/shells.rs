@@ -60,7 +60,7 @@ pub enum InShellError {
 /// The shells in which `homeo simplify` looks for a section: the one that is usual for sections, then one whose pillars
 /// come no farther than 60 degrees from normals.
 ///
-/// The second has up to four times the prisms. On some smooth and bent surfaces sections in it are coarser; on a gear
+/// The second had up to 4.4 times the prisms. On some smooth and bent surfaces sections in it are coarser; on a gear
 /// that is twisted into a helix they were not. Columns of both have the usual thickness.
 ///
 /// # Example
