@@ -232,9 +232,9 @@ pub struct InsideArgs {
     #[arg(long, value_name = "MAP.homeo")]
     pub map: Option<PathBuf>,
     /// How far the surface may move: largest distance of the shell's bottom and top from its middle, relative to the longest
-    /// side of the bounding box
-    #[arg(long, value_name = "T", default_value_t = 0.1, value_parser = positive)]
-    pub thickness: f64,
+    /// side of the bounding box [default: 0.1]
+    #[arg(long, value_name = "T", value_parser = positive)]
+    pub thickness: Option<f64>,
     /// Keep edges as chains where the normals of their triangles differ by more than A degrees
     #[arg(long, value_name = "A", value_parser = degrees)]
     pub features: Option<f64>,
@@ -271,6 +271,10 @@ pub struct SimplifyArgs {
     /// Put no vertex farther than this from the planes of its triangles (root mean square, in units of MESH)
     #[arg(long, value_name = "E", value_parser = positive)]
     pub error: Option<f64>,
+    /// Make a shell whose pillars come no farther than A degrees from normals, as `shell --largest-angle` [default: 89.95;
+    /// where --to is not reached then, 60 as well, and the better one is kept, unless --thickness is given]
+    #[arg(long, value_name = "A", value_parser = right_angle)]
+    pub largest_angle: Option<f64>,
 }
 
 #[derive(Debug, Args)]

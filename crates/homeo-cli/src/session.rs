@@ -138,6 +138,18 @@ impl Session {
         let _ = self.stop.compare_exchange(TIMEOUT, RUNNING, Ordering::SeqCst, Ordering::SeqCst);
     }
 
+    /// From here on the time limit ends the run again. Returns whether it ended the work meanwhile; then it is lifted.
+    pub fn let_time_end_run(&self) -> bool {
+        let mut time_limit = locked(&self.time_limit);
+        let was_cut_short = self.stop.load(Ordering::SeqCst) == TIMEOUT;
+        *time_limit = if was_cut_short { TimeLimit::Lifted } else { TimeLimit::EndsRun };
+        drop(time_limit);
+        if was_cut_short {
+            self.lift_time_limit();
+        }
+        was_cut_short
+    }
+
     /// Ends the stage that runs.
     pub fn end_stage(&self) {
         let mut clock = locked(&self.clock);

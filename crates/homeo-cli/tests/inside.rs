@@ -129,6 +129,36 @@ fn simplify_ends_where_it_is_told() {
 }
 
 #[test]
+fn a_second_shell_is_tried_where_the_first_falls_short() {
+    let folder = Folder::new();
+    folder.write("t.obj", torus(N, M));
+    // The angle and the thickness that are given are those of the one shell there is.
+    for (options, tried) in [
+        ("--to 4", vec![89.95, 60.0]),
+        ("--to 40%", vec![89.95]),
+        ("--to 4 --largest-angle 60", vec![60.0]),
+        ("--to 4 --thickness 0.1", vec![89.95]),
+        ("--error 0.02", vec![89.95]),
+    ] {
+        let report = folder.line(&format!("simplify t.obj {options} -o s.obj --json -q")).expect(0).json();
+        let quality = &report["quality"];
+        let shells = quality["shells"].as_array().unwrap();
+        let angles: Vec<f64> = shells.iter().map(|shell| shell["largest_angle"].as_f64().unwrap()).collect();
+        assert_eq!(angles, tried, "{options}");
+        let counts: Vec<u64> = shells.iter().map(|shell| count(&shell["triangles"])).collect();
+        let kept = counts.iter().position(|triangles| Some(triangles) == counts.iter().min()).unwrap();
+        assert_eq!((count(&quality["shell"]), count(&quality["triangles"])), (kept as u64, counts[kept]), "{options}");
+        assert_eq!(quality["prisms"], shells[kept]["prisms"], "{options}");
+        assert_eq!(mesh(&folder, "s.obj").polygons.len() as u64, counts[kept]);
+    }
+    let text = folder.line("simplify t.obj --to 4 -o s.obj -q").expect(0).stdout;
+    assert_eq!((text.matches("shell kept").count(), text.matches("shell tried").count()), (1, 1), "{text}");
+    let text = folder.line("simplify t.obj --to 40% -o s.obj -q").expect(0).stdout;
+    assert!(!text.contains("shell kept"), "{text}");
+    folder.line("simplify t.obj --to 4 --largest-angle 91 -o no.obj").expect(2);
+}
+
+#[test]
 fn remesh_makes_edges_even() {
     let folder = Folder::new();
     folder.write("t.obj", torus(N, M));

@@ -1,4 +1,5 @@
-//! Builds the shell of a mesh, simplifies the mesh in it to 2 %, and remeshes it with three lengths of edges.
+//! Simplifies a mesh to 2 % in a shell, as `homeo simplify --to 2%` does, and remeshes it with three lengths of edges in
+//! the first shell.
 //!
 //! Usage: `cargo run --release -p homeo --example section_table -- MESH [FEATURE_DEGREES] [FACTORS]`
 //!
@@ -6,11 +7,13 @@
 //! otherwise; none, as `""`, to simplify only. Without features give 180 for their angle.
 //!
 //! Prints rows of a Markdown table: mesh, operation, triangles before and after, processor seconds (wall seconds where the
-//! system does not tell), whether the independent checker certifies the result as a section of the same shell, pairs of
+//! system does not tell; where 2 % are not reached in the first shell, those for the second shell and the section in it
+//! count for the section), whether the independent checker certifies the result as a section of the same shell, pairs of
 //! triangles of the result that meet in space, and, if the file has texture coordinates at corners, the triangles turned
 //! over and the overlapping pairs in the texture plane, before and after. Exit code 1 if a result is not certified.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program")]
 
+use std::cell::RefCell;
 use std::io::Cursor;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
@@ -18,12 +21,12 @@ use std::time::Instant;
 
 use homeo::certificate::{Provenance, write_shell};
 use homeo::construct::section::{
-    RemeshParams, SimplifyEnd, SimplifyParams, Texture, TexturedSurface, remesh, simplify,
+    RemeshParams, SimplifyEnd, SimplifyParams, Texture, TexturedSurface, remesh, shells_in_turn, simplify_in_shells,
 };
-use homeo::construct::shell::{ShellParams, build};
+use homeo::construct::shell::build;
 use homeo::input::SourceMesh;
 use homeo::map::Shell;
-use homeo::progress::Silent;
+use homeo::progress::{Progress, Silent};
 use homeo_core::io::{Element, MeshFile, Values};
 use homeo_core::mesh::SimplicialComplex;
 use homeo_core::predicate::{Sign, orient2d};
@@ -51,14 +54,25 @@ fn run(arguments: &[String]) -> Result<bool, String> {
     let name = std::path::Path::new(path).file_name().unwrap_or_default().to_string_lossy().into_owned();
     let start = textured(file)?;
     let count = start.surface.complex().cell_count();
-    let begin = clock();
-    let (shell, _) = build(&start.surface, &ShellParams { may_thin: false, ..ShellParams::default() }, &Silent)
-        .map_err(|error| error.to_string())?;
-    let spent = seconds_since(&begin);
-    println!("| {name} | shell | {count} | {} prisms | {spent:.1} | | | |", shell.parts().prisms.len());
+    let [usual, steep] = shells_in_turn();
+    let params = SimplifyParams { triangles: count / 50, feature_angle, largest_error: None };
+    let timer = Timer::default();
+    let made = simplify_in_shells(&start, &usual, &[steep], &params, &timer).map_err(|error| error.to_string())?;
+    let [spent, on_section] = timer.seconds();
+    for (number, attempt) in made.attempts.iter().enumerate() {
+        let kept = if number == made.kept { "kept" } else { "tried" };
+        let angle = attempt.largest_angle.to_degrees();
+        match &attempt.outcome {
+            Ok(outcome) => println!(
+                "| {name} | shell {kept}, {angle:.2} degrees | {count} | {} prisms, {} triangles | {spent:.1} | | | |",
+                outcome.prisms, outcome.triangles
+            ),
+            Err(error) => println!("| {name} | shell {kept}, {angle:.2} degrees | {count} | none: {error} | | | | |"),
+        }
+    }
     let mut is_all_certified = true;
-    let mut row = |operation: &str, result: &TexturedSurface, seconds: f64| {
-        let outcome = certified(&shell, &result.surface);
+    let mut row = |operation: &str, shell: &Shell, result: &TexturedSurface, seconds: f64| {
+        let outcome = certified(shell, &result.surface);
         is_all_certified &= outcome == "yes";
         let crossing = self_intersections(result.surface.positions(), result.surface.complex()).pairs.len();
         let texture = match (&start.texture, &result.texture) {
@@ -71,21 +85,23 @@ fn run(arguments: &[String]) -> Result<bool, String> {
         let after = result.surface.complex().cell_count();
         println!("| {name} | {operation} | {count} | {after} | {seconds:.1} | {outcome} | {crossing} | {texture} |");
     };
-    let begin = clock();
-    let params = SimplifyParams { triangles: count / 50, feature_angle, largest_error: None };
-    let (coarse, info) = simplify(&shell, &start, &params, &Silent).map_err(|error| error.to_string())?;
-    let seconds = seconds_since(&begin);
-    let end = if info.end == SimplifyEnd::Reached { "simplify to 2 %" } else { "simplify to 2 %, none left" };
-    row(end, &coarse, seconds);
-    eprintln!("{info:?}");
+    let end = if made.info.end == SimplifyEnd::Reached { "simplify to 2 %" } else { "simplify to 2 %, none left" };
+    row(end, &made.shell, &made.section, on_section);
+    eprintln!("{:?}", made.info);
     let factors = arguments.get(2).map_or("0.5,1,2", |text| text);
-    for factor in factors.split(',').filter(|text| !text.is_empty()) {
+    let factors: Vec<&str> = factors.split(',').filter(|text| !text.is_empty()).collect();
+    let shell = match made.kept {
+        0 => made.shell,
+        _ if factors.is_empty() => return Ok(is_all_certified),
+        _ => build(&start.surface, &usual, &Silent).map_err(|error| error.to_string())?.0,
+    };
+    for factor in factors {
         let factor: f64 = factor.parse().map_err(|error| format!("{factor}: {error}"))?;
         let begin = clock();
         let length = factor * mean_edge(&start.surface);
         let params = RemeshParams { feature_angle, ..RemeshParams::with_edge_length(length) };
         let (result, info) = remesh(&shell, &start, &params, &Silent).map_err(|error| error.to_string())?;
-        row(&format!("remesh, {factor} x mean edge"), &result, seconds_since(&begin));
+        row(&format!("remesh, {factor} x mean edge"), &shell, &result, seconds_since(&begin));
         eprintln!("{info:?}");
     }
     Ok(is_all_certified)
@@ -183,6 +199,29 @@ fn mean_edge(mesh: &SourceMesh<3>) -> f64 {
         }
     }
     sum / (3 * mesh.complex().cell_count()).max(1) as f64
+}
+
+/// When the first section was begun.
+#[derive(Default)]
+struct Timer(RefCell<Vec<(Instant, Option<f64>)>>);
+
+impl Timer {
+    /// Seconds until the first section was begun, and since then.
+    fn seconds(&self) -> [f64; 2] {
+        let moments = self.0.borrow();
+        let [Some(first), Some(second)] = [moments.first(), moments.get(1)] else { return [0.0; 2] };
+        let since = seconds_since(second);
+        [seconds_since(first) - since, since]
+    }
+}
+
+impl Progress for Timer {
+    fn stage(&self, name: &'static str) {
+        let mut moments = self.0.borrow_mut();
+        if moments.is_empty() || (moments.len() == 1 && name == "section") {
+            moments.push(clock());
+        }
+    }
 }
 
 /// Wall clock, and seconds that processors have spent on this process (Linux).

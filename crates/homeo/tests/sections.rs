@@ -6,9 +6,10 @@ use std::io::Cursor;
 
 use homeo::certificate::{Provenance, write_shell};
 use homeo::construct::section::{
-    Fault, RemeshParams, SectionError, SimplifyEnd, SimplifyParams, Texture, TexturedSurface, check, remesh, simplify,
+    Fault, InShellError, RemeshParams, SectionError, SimplifyEnd, SimplifyParams, Texture, TexturedSurface, check,
+    remesh, shells_in_turn, simplify, simplify_in_shells,
 };
-use homeo::construct::shell::{ShellParams, build};
+use homeo::construct::shell::{ShellError, ShellParams, build};
 use homeo::input::SourceMesh;
 use homeo::map::Shell;
 use homeo::progress::{Progress, Silent};
@@ -87,7 +88,7 @@ fn what_cannot_become_simpler_is_still_a_section() {
 
 #[test]
 fn loosened_surfaces_are_sections_and_become_simpler() {
-    for source in [torus(32, 16, 5.0), turned_box(6), half_torus()] {
+    for source in [torus(16, 9, 3.0), half_torus()] {
         let shell = built(&source);
         // With a bound for the error nothing is loosened, and this one does not bind.
         let params = SimplifyParams { largest_error: Some(f64::MAX), ..fewer(0) };
@@ -116,6 +117,68 @@ fn texture_stays_embedded_when_a_surface_is_loosened() {
     assert_section(&shell, &section.surface);
     assert_embedded(section.texture.as_ref().expect("a texture"), sign);
     assert_two_crossing_circles(&section);
+}
+
+/// The shells that `homeo simplify` tries, with fewer rounds.
+fn two_shells() -> [ShellParams; 2] {
+    shells_in_turn().map(|params| ShellParams { rounds: 10, ..params })
+}
+
+#[test]
+fn the_shell_with_the_coarsest_section_is_kept() {
+    let start = TexturedSurface::from(torus(12, 8, 3.0));
+    let [usual, steep] = two_shells();
+    let mut kept = Vec::new();
+    for [first, second] in [[&usual, &steep], [&steep, &usual]] {
+        let others = std::slice::from_ref(second);
+        let made = simplify_in_shells(&start, first, others, &fewer(0), &Silent).expect("a section");
+        let angles: Vec<f64> = made.attempts.iter().map(|attempt| attempt.largest_angle).collect();
+        assert_eq!(angles, [first.largest_angle, second.largest_angle]);
+        let counts: Vec<usize> = made.attempts.iter().flat_map(|a| &a.outcome).map(|o| o.triangles).collect();
+        assert_ne!(counts[0], counts[1], "there is nothing to choose");
+        assert_eq!(made.kept, usize::from(counts[1] < counts[0]));
+        assert_eq!([made.info.triangles, made.section.surface.complex().cell_count()], [counts[made.kept]; 2]);
+        assert_section(&made.shell, &made.section.surface);
+        kept.push((made.kept, counts));
+        // Where the first shell is enough, there is no other.
+        let enough = start.surface.complex().cell_count() - 10;
+        let made = simplify_in_shells(&start, first, others, &fewer(enough), &Silent).expect("a section");
+        assert_eq!((made.info.end, made.kept, made.attempts.len()), (SimplifyEnd::Reached, 0, 1));
+    }
+    // In the other order it is the same shell.
+    kept[1].1.reverse();
+    assert_eq!((kept[0].0, &kept[0].1), (1 - kept[1].0, &kept[1].1));
+}
+
+#[test]
+fn without_a_second_shell_the_first_is_kept() {
+    /// Stops as soon as the second shell is begun.
+    #[derive(Default)]
+    struct Once(std::sync::atomic::AtomicBool);
+    impl Progress for Once {
+        fn stage(&self, name: &'static str) {
+            self.0.store(name == "again", std::sync::atomic::Ordering::Relaxed);
+        }
+        fn is_cancelled(&self) -> bool {
+            self.0.load(std::sync::atomic::Ordering::Relaxed)
+        }
+    }
+    let start = TexturedSurface::from(torus(12, 8, 0.0));
+    let [usual, steep] = two_shells();
+    let impossible = ShellParams { thickness: f64::NAN, ..steep.clone() };
+    let never = SimplifyParams { feature_angle: Some(f64::NAN), ..fewer(0) };
+    let stopped = simplify_in_shells(&start, &usual, std::slice::from_ref(&steep), &fewer(0), &Once::default());
+    let refused = simplify_in_shells(&start, &usual, std::slice::from_ref(&impossible), &fewer(0), &Silent);
+    for (made, why) in [(stopped, ShellError::Cancelled), (refused, ShellError::Thickness)] {
+        let made = made.expect("the first section");
+        assert_eq!((made.kept, made.info.end), (0, SimplifyEnd::Exhausted));
+        assert_eq!(made.attempts[1].outcome, Err(why));
+        assert_section(&made.shell, &made.section.surface);
+    }
+    let none = simplify_in_shells(&start, &impossible, &[steep], &fewer(0), &Silent);
+    assert_eq!(none.expect_err("no first shell"), InShellError::Shell(ShellError::Thickness));
+    let none = simplify_in_shells(&start, &usual, &[], &never, &Silent);
+    assert!(matches!(none.expect_err("no section"), InShellError::Section(SectionError::Parameter(_))));
 }
 
 #[test]

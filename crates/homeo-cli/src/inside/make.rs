@@ -6,14 +6,13 @@ use homeo::certificate::Provenance;
 use homeo::construct::section::{
     self, Refusals, RemeshParams, SectionError, SimplifyEnd, SimplifyParams, Texture, TexturedSurface,
 };
-use homeo::construct::shell::ShellParams;
 use homeo::map::Shell;
 use homeo::progress::Progress;
 use homeo_core::io::{Element, MeshFile};
 use homeo_verify::Claim;
 use serde_json::{Value, json};
 
-use super::{Targets, attributes, certify, mesh_file, sizing, stage_mesh, texture};
+use super::{Targets, attributes, certify, mesh_file, shells, sizing, stage_mesh, texture};
 use crate::answer::Answer;
 use crate::args::{InsideArgs, RemeshArgs, SimplifyArgs};
 use crate::failure::{Failure, Result};
@@ -26,6 +25,7 @@ use crate::text::{Lines, file_name, stages};
 
 /// What a construction made of the surface.
 struct Made {
+    shell: Shell,
     section: TexturedSurface,
     quality: Value,
     lines: Lines,
@@ -33,24 +33,34 @@ struct Made {
 
 /// Fewer triangles.
 pub fn simplify(session: &Session, options: &SimplifyArgs, outputs: &mut Outputs) -> Result<Answer> {
-    let made =
-        json!({"to": options.to.map(|to| to.to_string()), "error": options.error, "features": options.common.features});
-    run(session, &options.common, made, outputs, |shell, start, angle, _| {
+    let construction = json!({
+        "to": options.to.map(|to| to.to_string()), "error": options.error,
+        "largest_angle": options.largest_angle, "features": options.common.features,
+    });
+    run(session, &options.common, construction, outputs, |start, _| {
         let first = start.surface.complex().cell_count();
         let params = SimplifyParams {
             triangles: options.to.map_or(0, |to| to.of(first)),
             largest_error: options.error,
-            feature_angle: angle,
+            feature_angle: feature_angle(&options.common),
         };
-        let (section, info) = section::simplify(shell, start, &params, &Sections(session)).map_err(explain)?;
+        let found = shells::search(session, start, options, &params)?;
+        let info = &found.info;
         let mut lines = Lines::default();
         let share = 100.0 * info.triangles as f64 / first.max(1) as f64;
         lines.add("triangles", format!("{} of {first} ({share:.1} %)", info.triangles));
+        shells::tell(&found, &mut lines);
         // Without a number the error ends it, as it should.
         let reached = options.to.map(|_| info.end == SimplifyEnd::Reached);
         if reached == Some(false) {
             let within = if options.error.is_some() { "shell with this error" } else { "shell" };
-            lines.add("ended", format!("no edge is left that could be collapsed in this {within}"));
+            lines.add(
+                "ended",
+                match info.end {
+                    SimplifyEnd::Cancelled => "cut short by the time limit".to_owned(),
+                    _ => format!("no edge is left that could be collapsed in this {within}"),
+                },
+            );
             let Refusals { links, shape, shell, texture } = info.refusals;
             lines.add(
                 "refused",
@@ -58,40 +68,49 @@ pub fn simplify(session: &Session, options: &SimplifyArgs, outputs: &mut Outputs
             );
         }
         lines.add("error", format!("{:.2e} at most (root of the mean squared distance to planes)", info.largest_error));
-        let refused = info.refusals;
         let quality = json!({
             "triangles": info.triangles, "first_triangles": first, "collapses": info.collapses,
-            "largest_error": info.largest_error, "reached": reached,
-            "refused": {"links": refused.links, "shape": refused.shape, "shell": refused.shell, "texture": refused.texture},
+            "largest_error": info.largest_error, "reached": reached, "refused": refused(&info.refusals),
+            "shells": shells::described(&found), "shell": found.kept,
         });
-        Ok(Made { section, quality, lines })
+        Ok(Made { shell: found.shell, section: found.section, quality, lines })
     })
 }
 
 /// Triangles of about equal size.
 pub fn remesh(session: &Session, options: &RemeshArgs, outputs: &mut Outputs) -> Result<Answer> {
-    let made = json!({
+    let construction = json!({
         "edge": options.edge, "sizing": options.sizing, "adaptive": options.adaptive,
         "iterations": options.iterations, "features": options.common.features,
     });
-    run(session, &options.common, made, outputs, |shell, start, angle, file| {
+    run(session, &options.common, construction, outputs, |start, file| {
+        let usual = shells::usual(&options.common);
+        let shell = shell::construct_in_time(session, &start.surface, &usual)?;
         let (edge_length, sizing) = sizing::wanted(options, &start.surface, file)?;
-        let params = RemeshParams { edge_length, sizing, feature_angle: angle, iterations: options.iterations };
-        let (section, info) = section::remesh(shell, start, &params, &Sections(session)).map_err(explain)?;
+        let feature_angle = feature_angle(&options.common);
+        let params = RemeshParams { edge_length, sizing, feature_angle, iterations: options.iterations };
+        let (section, info) = section::remesh(&shell, start, &params, &Sections(session)).map_err(explain)?;
         let mean = texture::mean_edge(&section.surface);
         let mut lines = Lines::default();
         lines.add("triangles", format!("{} instead of {}", info.triangles, info.first_triangles));
         let bound = if options.adaptive.is_some() { "at most" } else { "on average" };
         lines.add("edges", format!("{mean:.4} long on average, {edge_length:.4} wanted {bound}"));
-        let refused = info.refusals;
         let quality = json!({
             "triangles": info.triangles, "first_triangles": info.first_triangles, "edge_length": edge_length,
             "mean_edge_length": mean, "splits": info.splits, "collapses": info.collapses, "flips": info.flips,
-            "moves": info.moves, "iterations": info.iterations,
-            "refused": {"links": refused.links, "shape": refused.shape, "shell": refused.shell, "texture": refused.texture},
+            "moves": info.moves, "iterations": info.iterations, "refused": refused(&info.refusals),
         });
-        Ok(Made { section, quality, lines })
+        Ok(Made { shell, section, quality, lines })
     })
+}
+
+fn refused(refusals: &Refusals) -> Value {
+    let Refusals { links, shape, shell, texture } = refusals;
+    json!({"links": links, "shape": shape, "shell": shell, "texture": texture})
+}
+
+fn feature_angle(options: &InsideArgs) -> Option<f64> {
+    options.features.map(f64::to_radians)
 }
 
 /// The session, with the stages of sections told apart from those of the shell.
@@ -112,7 +131,7 @@ fn run(
     options: &InsideArgs,
     construction: Value,
     outputs: &mut Outputs,
-    make: impl FnOnce(&Shell, &TexturedSurface, Option<f64>, &MeshFile) -> Result<Made>,
+    make: impl FnOnce(&TexturedSurface, &MeshFile) -> Result<Made>,
 ) -> Result<Answer> {
     let targets = Targets { mesh: &options.output, map: options.map.as_deref() };
     let format = targets.check(&[&options.input])?;
@@ -121,8 +140,6 @@ fn run(
     let advice = "only `homeo shell --immersed` takes surfaces that cross themselves";
     let crossings = shell::Crossings::Refused { advice };
     let source = source_mesh(&mesh.file, shell::unfit(session, &mesh, options.triangulate, crossings)?);
-    let params = ShellParams { thickness: options.thickness, may_thin: false, ..ShellParams::default() };
-    let shell = shell::construct_in_time(session, &source, &params)?;
     let carried = texture::of_file(&mesh.file);
     if carried.is_none() && mesh.file.attribute("texture", Element::Corner).is_some() {
         session.display().note(
@@ -130,9 +147,9 @@ fn run(
         );
     }
     let start = TexturedSurface { surface: source, texture: carried.as_ref().map(|(texture, _)| texture.clone()) };
-    let made = make(&shell, &start, options.features.map(f64::to_radians), &mesh.file)?;
+    let made = make(&start, &mesh.file)?;
     session.check()?;
-    let shell = shell.with_section(made.section.surface.clone());
+    let shell = made.shell.with_section(made.section.surface.clone());
     let provenance = provenance(options, construction);
     let claim = certify(session, &shell, &provenance, targets.map, outputs)?;
     // The construction itself carried the texture; the others are looked for on the source.
@@ -168,7 +185,7 @@ fn read(session: &Session, options: &InsideArgs) -> Result<MeshInput> {
     Ok(mesh)
 }
 
-fn explain(error: SectionError) -> Failure {
+pub(super) fn explain(error: SectionError) -> Failure {
     match error {
         SectionError::Parameter(_) => Failure::usage(error.to_string()),
         SectionError::Texture(_) => Failure::input("texture", error.to_string()),
@@ -185,7 +202,7 @@ fn provenance(options: &InsideArgs, construction: Value) -> Provenance {
         source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
-            "thickness": options.thickness, "section": construction,
+            "thickness": shells::usual(options).thickness, "section": construction,
             "weld": options.weld, "triangulate": options.triangulate, "orient": options.orient,
         }),
     }

@@ -6,6 +6,7 @@
 mod attributes;
 mod make;
 mod pl;
+mod shells;
 mod sizing;
 mod texture;
 mod transfer;

@@ -156,7 +156,7 @@ pub fn construct_in_time(session: &Session, source: &SourceMesh<3>, params: &She
     Ok(shell)
 }
 
-fn explain(session: &Session, error: &ShellError) -> Failure {
+pub fn explain(session: &Session, error: &ShellError) -> Failure {
     let message = error.to_string();
     match error {
         ShellError::Thickness | ShellError::Angle | ShellError::Contradiction => Failure::usage(message),

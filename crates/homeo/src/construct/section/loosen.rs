@@ -87,10 +87,12 @@ impl Simplification<'_> {
 
     fn move_vertex(&mut self, vertex: u32) -> bool {
         let editor = &self.editor;
-        let Some(change) = editor.shift_change(vertex, editor.surface.point(vertex)) else { return false };
+        let Some(mut change) = editor.shift_change(vertex, editor.surface.point(vertex)) else { return false };
         let least = editor.steepness(&change, -1.0) + LEAST_GAIN;
-        let steepness_at =
-            |place: Point| editor.steepness(&Change { moved: Some((vertex, place)), ..change.clone() }, least);
+        let mut steepness_at = |place: Point| {
+            change.moved = Some((vertex, place));
+            editor.steepness(&change, least)
+        };
         let places = editor.places(vertex).into_iter().map(|place| (steepness_at(place), place));
         let mut better: Vec<(f64, Point)> = places.filter(|(steepness, _)| *steepness > least).collect();
         better.sort_by(|one, other| other.0.total_cmp(&one.0));

@@ -46,12 +46,14 @@ mod outline;
 mod quadric;
 mod remesh;
 mod shape;
+mod shells;
 mod simplify;
 mod sizing;
 mod stage;
 mod surface;
 
 pub use remesh::{RemeshInfo, RemeshParams, remesh};
+pub use shells::{Attempt, InShellError, Outcome, SimplifiedInShell, shells_in_turn, simplify_in_shells};
 pub use simplify::{SimplifyEnd, SimplifyInfo, SimplifyParams, simplify};
 pub use sizing::lengths_by_curvature;
 
