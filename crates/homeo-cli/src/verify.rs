@@ -93,10 +93,8 @@ fn compare_domain(bytes: &[u8], path: &Path) -> Result<Value> {
 
 /// The counts of the source are among what was checked, but for shells and planar domains.
 fn described(claim: &Claim, bytes: &[u8], path: &Path) -> Value {
-    if claim.kind == "shell" || is_planar(claim) {
-        if let Ok(map) = read_map(bytes) {
-            return proof::map_json(&map, path);
-        }
+    if let (true, Ok(map)) = (claim.kind == "shell" || is_planar(claim), read_map(bytes)) {
+        return proof::map_json(&map, path);
     }
     let count = |what: &str| claim.checked.iter().find(|(name, _)| name.starts_with(what)).map(|&(_, n)| n);
     let cells = if matches!(claim.target.as_str(), "square" | "disk") { "triangles" } else { "tetrahedra" };

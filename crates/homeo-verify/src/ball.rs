@@ -159,6 +159,7 @@ impl Sub for Dual {
 
 impl Mul for Dual {
     type Output = Dual;
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "the product rule has a sum")]
     fn mul(self, other: Dual) -> Dual {
         let ([a, ..], [b, ..]) = (self.0, other.0);
         let slope = |k: usize| a * other.0[k] + self.0[k] * b;

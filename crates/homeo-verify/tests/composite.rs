@@ -290,7 +290,7 @@ fn is_near_sides(triangles: &[[u32; 3]], points: &[Point], at: Point) -> bool {
     let near = |&t: &[u32; 3]| {
         (0..3).any(|k| {
             let turned = angle(points[t[k] as usize], points[t[(k + 1) % 3] as usize], at).abs();
-            turned < 1e-9 || turned > TAU / 2.0 - 1e-9
+            !(1e-9..=TAU / 2.0 - 1e-9).contains(&turned)
         })
     };
     triangles.iter().any(near)

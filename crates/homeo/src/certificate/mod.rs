@@ -29,6 +29,7 @@ pub enum StoredMap {
 
 /// A map between planar domains.
 #[derive(Debug)]
+#[allow(clippy::large_enum_variant)] // there is one at a time, and its arrays are elsewhere
 pub enum PlanarMap {
     /// A composite harmonic map, or one by landmarks: piecewise linear.
     Harmonic(HarmonicMap),
