@@ -14,7 +14,7 @@ pub struct Way {
 }
 
 /// The ways of a name, or why there is none. `turn` is by how many degrees a hole shall turn.
-pub fn ways(pair: &DomainPair, name: PathName, turn: Option<f64>) -> Vec<Result<Way, String>> {
+pub fn ways(pair: &DomainPair, name: PathName, turn: Option<f64>) -> impl Iterator<Item = Result<Way, String>> {
     let names = match name {
         PathName::Straight => vec!["straight"],
         PathName::Angles => vec!["angles"],
@@ -23,7 +23,8 @@ pub fn ways(pair: &DomainPair, name: PathName, turn: Option<f64>) -> Vec<Result<
         PathName::Auto if pair.source.rings().len() > 1 => vec!["turning", "straight", "simple"],
         PathName::Auto => vec!["angles", "straight", "turning", "simple"],
     };
-    names.into_iter().map(|name| way(pair, name, turn).map_err(|error| format!("{name}: {error}"))).collect()
+    // One after the other, as long as they are asked for.
+    names.into_iter().map(move |name| way(pair, name, turn).map_err(|error| format!("{name}: {error}")))
 }
 
 fn way(pair: &DomainPair, name: &'static str, turn: Option<f64>) -> Result<Way, String> {
