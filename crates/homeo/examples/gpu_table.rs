@@ -112,7 +112,7 @@ fn map(vertices: usize, steps: usize) -> CompositeMap {
         let t = step as f64 / steps as f64;
         let vertex = |k: usize| {
             let angle = 0.3 * t + std::f64::consts::TAU * k as f64 / vertices as f64;
-            let radius = if k % 2 == 0 { 1.0 } else { 0.6 + 0.4 * t };
+            let radius = if k.is_multiple_of(2) { 1.0 } else { 0.6 + 0.4 * t };
             [radius * angle.cos(), radius * angle.sin()]
         };
         PlanarDomain::new(vec![(0..vertices).map(vertex).collect()]).expect("a star is simple")

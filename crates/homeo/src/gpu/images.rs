@@ -12,7 +12,7 @@ use crate::map::PlanarBijection;
 pub(super) const PROGRAM: &str = include_str!("images.wgsl");
 
 /// Points times edges times steps in one pass: longer ones some drivers take for hung.
-const MOST_WORK: usize = 1 << 32;
+const MOST_WORK: usize = 1 << 31;
 /// What the program writes in the place of a first coordinate: left to the processor, and outside.
 const IS_LEFT: f32 = 4.0;
 const IS_OUTSIDE: f32 = 8.0;
