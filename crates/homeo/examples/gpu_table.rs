@@ -106,13 +106,13 @@ fn picture(gpu: &Gpu, side: usize, filter: Filter) -> Result<bool, GpuError> {
     Ok(worst <= 1)
 }
 
-/// From a star to a regular polygon, in equal steps.
+/// From a star to a regular polygon, in equal steps. Its spikes are about as long as wide, whatever their number.
 fn map(vertices: usize, steps: usize) -> CompositeMap {
     let domain = |step: usize| {
         let t = step as f64 / steps as f64;
         let vertex = |k: usize| {
             let angle = 0.3 * t + std::f64::consts::TAU * k as f64 / vertices as f64;
-            let radius = if k.is_multiple_of(2) { 1.0 } else { 0.6 + 0.4 * t };
+            let radius = if k.is_multiple_of(2) { 1.0 } else { 1.0 - 8.0 * (1.0 - t) / vertices as f64 };
             [radius * angle.cos(), radius * angle.sin()]
         };
         PlanarDomain::new(vec![(0..vertices).map(vertex).collect()]).expect("a star is simple")

@@ -69,7 +69,8 @@ impl Gpu {
         let found = wait(wgpu::Instance::new(wanted).request_adapter(&options))
             .map_err(|error| GpuError::NoAdapter(error.to_string()))?;
         let info = found.get_info();
-        let adapter = format!("{} ({} {})", info.name, info.driver, info.driver_info).trim().to_owned();
+        let driver = format!("{} {}", info.driver, info.driver_info);
+        let adapter = format!("{} ({})", info.name, driver.trim());
         let limits = wgpu::Limits::downlevel_defaults();
         let most_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
