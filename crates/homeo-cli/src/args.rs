@@ -511,6 +511,10 @@ pub struct WarpArgs {
     /// How the inside follows [default: harmonic with polygons, mean-value with cages]
     #[arg(long, value_enum, value_name = "METHOD", conflicts_with = "landmarks")]
     pub method: Option<MethodName>,
+    /// What samples a picture: the processor, or a graphics processor (8 bits); maps are made and proved by the first
+    #[cfg(feature = "gpu")]
+    #[arg(long, value_enum, value_name = "DEVICE", default_value_t = DeviceName::Cpu)]
+    pub device: DeviceName,
     #[command(flatten)]
     pub polygons: PolygonArgs,
     /// Save where every pixel of the result comes from, as float32 of shape (height, width, 2): what `remap` takes
@@ -630,6 +634,14 @@ pub enum Coordinates {
     Pixels,
     /// Both polygons in the middle of the picture, as large as they fit, y upwards
     Fit,
+}
+
+/// What samples pictures.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum DeviceName {
+    Cpu,
+    Gpu,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

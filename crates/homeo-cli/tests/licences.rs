@@ -1,4 +1,5 @@
-//! The licences of everything that the default build links: each must leave a permissive choice.
+//! The licences of everything that the default build links: each must leave a permissive choice. With the feature `gpu` the
+//! same for what that adds.
 //!
 //! `scripts/licences` runs this with `--nocapture` and shows the table. A licence that is not on the
 //! list fails the test, whatever it is: copyleft, unknown, or missing.
@@ -85,7 +86,8 @@ fn single(words: &[&str], at: &mut usize) -> Result<Satisfied, String> {
     Ok(if is_permissive { Ok(BTreeSet::from([name])) } else { Err(format!("{name} is not on the list")) })
 }
 
-/// What `cargo metadata` says of this workspace, for this machine's platform and the default features.
+/// What `cargo metadata` says of this workspace, for this machine's platform and the default features; with `gpu`, if this
+/// test is built with it.
 fn metadata() -> Value {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let version = Command::new(&cargo).arg("-vV").output().expect("cargo runs");
@@ -93,7 +95,8 @@ fn metadata() -> Value {
     let host = text.lines().find_map(|line| line.strip_prefix("host: ")).expect("cargo names its host");
     let arguments = ["metadata", "--format-version=1", "--locked", "--filter-platform", host, "--manifest-path"];
     let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
-    let output = Command::new(&cargo).args(arguments).arg(manifest).output().expect("cargo runs");
+    let features: &[&str] = if cfg!(feature = "gpu") { &["--features", "gpu"] } else { &[] };
+    let output = Command::new(&cargo).args(arguments).arg(manifest).args(features).output().expect("cargo runs");
     assert!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
@@ -139,11 +142,14 @@ fn every_dependency_of_the_default_build_leaves_a_permissive_choice() {
         table.entry(expression.to_owned()).or_default().push(name);
     }
     let count: usize = table.values().map(Vec::len).sum();
-    println!("{count} packages in the default build, by stated licence:");
+    let build = if cfg!(feature = "gpu") { "the build with `gpu`" } else { "the default build" };
+    println!("{count} packages in {build}, by stated licence:");
     for (expression, names) in &table {
         println!("  {expression}: {}", names.join(", "));
     }
     assert!(count > 20, "the dependency graph was read (found {count} packages)");
+    let has_wgpu = table.values().flatten().any(|name| name.starts_with("wgpu "));
+    assert_eq!(has_wgpu, cfg!(feature = "gpu"), "wgpu is for the feature `gpu` alone");
     assert!(refused.is_empty(), "not permissive:\n{}", refused.join("\n"));
 }
 

@@ -13,6 +13,8 @@ pub mod composite;
 pub mod construct;
 pub mod coordinates;
 pub mod export;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod harmonic;
 pub mod input;
 pub mod linear;

@@ -128,6 +128,10 @@ fn check_options(options: &WarpArgs) -> Result<&Path> {
     if let Some((name, _)) = refused.iter().find(|(_, is_given)| *is_given) {
         return Err(Failure::usage(format!("{name} is for polygons, not for cages")));
     }
+    #[cfg(feature = "gpu")]
+    if options.device == crate::args::DeviceName::Gpu {
+        return Err(Failure::usage(super::device::ONLY_PICTURES));
+    }
     let Some(output) = &options.output else { return Err(Failure::usage("give -o OUT for what has moved")) };
     let mut inputs = vec![options.input.as_path()];
     inputs.extend([&options.polygons.from, &options.polygons.to].into_iter().flatten().map(|path| path.as_path()));

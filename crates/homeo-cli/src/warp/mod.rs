@@ -2,6 +2,8 @@
 
 mod cage;
 mod composite;
+#[cfg(feature = "gpu")]
+mod device;
 mod landmarks;
 mod moved;
 pub mod path;
@@ -39,6 +41,8 @@ pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Resu
     check_outputs(options)?;
     session.stage("read");
     let input = Input::read(&options.input)?;
+    #[cfg(feature = "gpu")]
+    device::check(options, &input)?;
     let first = options.landmarks.as_deref().or_else(|| polygons::paths(&options.polygons).first().copied());
     let first = first.unwrap_or(&options.input);
     let made = make(session, options)?;
@@ -232,13 +236,28 @@ fn warp_picture(
         outputs.stage(session, path, |out| std::io::Write::write_all(out, &bytes).map_err(|e| e.to_string()))?;
     }
     if let Some(path) = &options.output {
-        let warped = picture.warped(map, &placement, filter(options.polygons.filter), session);
-        let warped = warped.ok_or_else(|| session.stopped())?;
+        let warped = warped(session, options, map, &picture, &placement)?;
         session.stage("write");
         warped.stage(session, path, outputs)?;
     }
     let fields = json!({"width": width, "height": height, "bits": bits});
     Ok(Done { fields, words: format!("{width} x {height} pixels of {bits} bits"), outside: 0 })
+}
+
+/// The picture, sampled by what `--device` names.
+fn warped(
+    session: &Session,
+    options: &WarpArgs,
+    map: &dyn PlanarBijection,
+    picture: &Picture,
+    placement: &Placement,
+) -> Result<Picture> {
+    let filter = filter(options.polygons.filter);
+    #[cfg(feature = "gpu")]
+    if options.device == crate::args::DeviceName::Gpu {
+        return device::warped(session, map, picture, placement, filter);
+    }
+    picture.warped(map, placement, filter, session).ok_or_else(|| session.stopped())
 }
 
 /// Where the polygons lie on a picture.

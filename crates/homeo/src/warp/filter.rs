@@ -22,7 +22,7 @@ const WIDEST: usize = 6;
 
 impl Filter {
     /// How many samples it takes in one direction.
-    fn width(self) -> usize {
+    pub(crate) fn width(self) -> usize {
         match self {
             Self::Linear => 2,
             Self::Bicubic => 4,
