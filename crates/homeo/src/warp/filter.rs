@@ -57,7 +57,8 @@ impl Filter {
         let down = self.weights((y - top) as f32);
         let width = self.width();
         let before = width as i64 / 2 - 1;
-        let (left, top) = (left as i64 - before, top as i64 - before);
+        // Far outside of any picture all is alike.
+        let [left, top] = [left, top].map(|c| c.clamp(-1e15, 1e15) as i64 - before);
         let mut sum = [0.0f32; 4];
         let last = picture.channels - 1;
         for (j, &weight_down) in down[..width].iter().enumerate() {

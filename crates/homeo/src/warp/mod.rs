@@ -119,14 +119,14 @@ pub fn warp_image<T: Sample>(
     (!progress.is_cancelled()).then_some(warped)
 }
 
-/// Applies a [`backward_field`] that is known already. Pixels whose origin is `NaN` become zero.
+/// Applies a [`backward_field`] that is known already. Pixels whose origin is not finite become zero.
 pub fn apply_field<T: Sample>(picture: &Raster<T>, field: &[[f32; 2]], width: usize, filter: Filter) -> Raster<T> {
     let (height, channels) = (field.len() / width.max(1), picture.channels);
     let mut warped = Raster::zero(width, height, channels, picture.has_alpha);
     let rows = warped.samples.par_chunks_mut((width * channels).max(1)).zip(field.par_chunks(width.max(1)));
     rows.for_each(|(pixels, origins)| {
         for (pixel, origin) in pixels.chunks_exact_mut(channels.max(1)).zip(origins) {
-            if !origin[0].is_nan() {
+            if origin.iter().all(|x| x.is_finite()) {
                 filter.sample(picture, origin.map(f64::from), pixel);
             }
         }
