@@ -24,7 +24,7 @@ use super::{ShapeError, ShapePath, check_time, mix};
 /// let path = TurningPath::new(vec![square], vec![turned], &[450.0])?;
 /// assert_eq!(path.turns_in_degrees(), [450.0]);
 /// let [x, y] = path.at(0.5)?[0][0];
-/// assert!((x + 2f64.sqrt()).abs() < 1e-12 && y.abs() < 1e-12, "225 degrees further: {x} {y}");
+/// assert!(x.abs() < 1e-12 && (y + 2f64.sqrt()).abs() < 1e-12, "225 degrees further than 45: {x} {y}");
 /// # Ok::<(), homeo::shape::ShapeError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
