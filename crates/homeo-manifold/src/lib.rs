@@ -26,6 +26,7 @@
 //! # Ok::<(), homeo_manifold::GluingError>(())
 //! ```
 
+pub mod bundle;
 pub mod link;
 pub mod permutation;
 pub mod skeleton;
