@@ -29,6 +29,7 @@
 pub mod bundle;
 pub mod link;
 pub mod permutation;
+pub mod simplify;
 pub mod skeleton;
 pub mod triangulation;
 

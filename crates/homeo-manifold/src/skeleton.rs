@@ -34,7 +34,7 @@ impl EdgeCorner {
     }
 
     /// The next one round the edge, as the gluing says; nothing at the boundary.
-    fn next(self, triangulation: &Triangulation) -> Option<Self> {
+    pub(crate) fn next(self, triangulation: &Triangulation) -> Option<Self> {
         let gluing = triangulation.neighbour(self.tetrahedron, self.corners.image(2))?;
         let corners = gluing.corners * self.corners * Permutation::transposition(2, 3);
         Some(Self { tetrahedron: gluing.tetrahedron, corners })
