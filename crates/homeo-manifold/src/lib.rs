@@ -11,6 +11,8 @@
 //! | [`triangulation`] | tetrahedra and the gluings of their faces |
 //! | [`skeleton`] | the classes of vertices, edges and faces, and what is round each edge |
 //! | [`link`] | the surfaces that cut off the vertices; orientation |
+//! | [`record`] | reading and writing gluings as JSON |
+//! | [`signature`](mod@signature) | isomorphism signatures, to and from |
 //!
 //! Source: Yin 2010, section 4.2.1. The class of a vertex whose link is no sphere is *truncated*: cut off, it leaves the
 //! link as a component of the boundary.
@@ -28,10 +30,16 @@
 
 pub mod link;
 pub mod permutation;
+pub mod record;
+#[cfg(test)]
+mod sample;
+pub mod signature;
 pub mod skeleton;
 pub mod triangulation;
 
 pub use link::{Link, Links};
 pub use permutation::Permutation;
+pub use record::{Record, RecordError, read_record, read_record_of, read_records, write_record};
+pub use signature::{SignatureError, automorphism_count, from_signature, signature};
 pub use skeleton::{EdgeClass, EdgeCorner, Skeleton};
 pub use triangulation::{Gluing, GluingError, Triangulation};
