@@ -11,6 +11,8 @@
 //! | [`triangulation`] | tetrahedra and the gluings of their faces |
 //! | [`skeleton`] | the classes of vertices, edges and faces, and what is round each edge |
 //! | [`link`] | the surfaces that cut off the vertices; orientation |
+//! | [`group`] | the fundamental group: a generator for each face off a tree, a relation for each inner edge |
+//! | [`homology`] | first homology, by Smith normal form |
 //! | [`record`] | reading and writing gluings as JSON |
 //! | [`signature`](mod@signature) | isomorphism signatures, to and from |
 //!
@@ -28,6 +30,8 @@
 //! # Ok::<(), homeo_manifold::GluingError>(())
 //! ```
 
+pub mod group;
+pub mod homology;
 pub mod link;
 pub mod permutation;
 pub mod record;
@@ -37,6 +41,8 @@ pub mod signature;
 pub mod skeleton;
 pub mod triangulation;
 
+pub use group::{FundamentalGroup, Letter};
+pub use homology::Homology;
 pub use link::{Link, Links};
 pub use permutation::Permutation;
 pub use record::{Record, RecordError, read_record, read_record_of, read_records, write_record};

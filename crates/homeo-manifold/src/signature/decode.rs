@@ -148,7 +148,9 @@ fn component(reader: &mut Reader, triangulation: &mut Triangulation) -> Result<(
     let permutations = (0..joins).map(|_| reader.value()).collect::<Result<Vec<_>, _>>()?;
     let all: Vec<_> = Permutation::all().collect();
     let mut joins = destinations.into_iter().zip(permutations).enumerate();
-    (0..count).for_each(|_| drop(triangulation.add_tetrahedron()));
+    for _ in 0..count {
+        triangulation.add_tetrahedron();
+    }
 
     let before = before as u32;
     let mut actions = actions.into_iter().enumerate();
