@@ -133,3 +133,17 @@ fn sums_are_printed_in_one_form() {
     // Z_2 + Z_3 + Z_2 + Z_5 + Z_3 + Z_5.
     assert_eq!(cyclic(&[6, 10, 15]), "2 Z_30");
 }
+
+#[test]
+fn a_mesh_of_a_hundred_thousand_tetrahedra_has_its_homology() {
+    let torus = Triangulation::from_complex(&crate::mesh::tests::torus(26)).unwrap();
+    assert_eq!(torus.len(), 105_456);
+    assert_eq!(Homology::new(&torus).to_string(), "3 Z");
+}
+
+#[test]
+fn random_gluings_of_many_tetrahedra_have_a_homology() {
+    let triangulation = random_gluings(&mut Random(13), 100_000, 0);
+    let group = Homology::new(&triangulation);
+    assert_eq!(Homology::new(&relabelled(&mut Random(14), &triangulation)), group);
+}
