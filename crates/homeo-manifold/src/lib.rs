@@ -17,6 +17,7 @@
 //! | [`subdivision`] | barycentric subdivision |
 //! | [`record`] | reading and writing gluings as JSON |
 //! | [`signature`](mod@signature) | isomorphism signatures, to and from |
+//! | [`enumerate`](mod@enumerate) | all closed triangulations of a few tetrahedra |
 //!
 //! Source: Yin 2010, section 4.2.1. The class of a vertex whose link is no sphere is *truncated*: cut off, it leaves the
 //! link as a component of the boundary.
@@ -32,6 +33,7 @@
 //! # Ok::<(), homeo_manifold::GluingError>(())
 //! ```
 
+pub mod enumerate;
 pub mod group;
 pub mod homology;
 pub mod link;
@@ -45,6 +47,7 @@ pub mod skeleton;
 pub mod subdivision;
 pub mod triangulation;
 
+pub use enumerate::{AllowedLinks, Enumerated, EnumerationError, enumerate};
 pub use group::{FundamentalGroup, Letter};
 pub use homology::Homology;
 pub use link::{Link, Links};
