@@ -11,6 +11,13 @@
 //! | [`triangulation`] | tetrahedra and the gluings of their faces |
 //! | [`skeleton`] | the classes of vertices, edges and faces, and what is round each edge |
 //! | [`link`] | the surfaces that cut off the vertices; orientation |
+//! | [`group`] | the fundamental group: a generator for each face off a tree, a relation for each inner edge |
+//! | [`homology`] | first homology, by Smith normal form |
+//! | [`mesh`] | from meshes and back |
+//! | [`subdivision`] | barycentric subdivision |
+//! | [`record`] | reading and writing gluings as JSON |
+//! | [`signature`](mod@signature) | isomorphism signatures, to and from |
+//! | [`enumerate`](mod@enumerate) | all closed triangulations of a few tetrahedra |
 //!
 //! Source: Yin 2010, section 4.2.1. The class of a vertex whose link is no sphere is *truncated*: cut off, it leaves the
 //! link as a component of the boundary.
@@ -27,13 +34,29 @@
 //! ```
 
 pub mod bundle;
+pub mod enumerate;
+pub mod group;
+pub mod homology;
 pub mod link;
+pub mod mesh;
 pub mod permutation;
+pub mod record;
+#[cfg(test)]
+mod sample;
+pub mod signature;
 pub mod simplify;
 pub mod skeleton;
+pub mod subdivision;
 pub mod triangulation;
 
+pub use enumerate::{AllowedLinks, Enumerated, EnumerationError, enumerate};
+pub use group::{FundamentalGroup, Letter};
+pub use homology::Homology;
 pub use link::{Link, Links};
+pub use mesh::{MeshError, SubdividedMesh};
 pub use permutation::Permutation;
+pub use record::{Record, RecordError, read_record, read_record_of, read_records, write_record};
+pub use signature::{SignatureError, automorphism_count, from_signature, signature};
 pub use skeleton::{EdgeClass, EdgeCorner, Skeleton};
+pub use subdivision::subdivided;
 pub use triangulation::{Gluing, GluingError, Triangulation};

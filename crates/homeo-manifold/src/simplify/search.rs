@@ -27,15 +27,15 @@ use crate::triangulation::Triangulation;
 pub fn without_inner_vertices(triangulation: &Triangulation) -> Result<Triangulation, SimplifyError> {
     let mut editor = Editor::new(triangulation)?;
     let mut random = Random(0);
-    for _ in 0..MOST_ATTEMPTS {
+    for attempt in 0..MOST_ATTEMPTS {
         collapse_all(&mut editor);
         if inner_vertices(&editor) <= usize::from(!has_truncated(&editor)) {
             return Ok(editor.finished());
         }
         reduce_all(&mut editor);
-        let steps = 1 + editor.len() / 20;
+        let steps = 1 + editor.len() / 20 + attempt % 6;
+        // Collapses come before the next reductions, which could undo the moves.
         shake(&mut editor, &mut random, steps);
-        reduce_all(&mut editor);
     }
     Err(SimplifyError::Stuck { left: inner_vertices(&editor) })
 }
