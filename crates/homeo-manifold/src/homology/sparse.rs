@@ -95,7 +95,7 @@ impl Matrix {
             }
         }
         self.sum.extend(old);
-        self.rows[target].extend(self.sum.drain(..));
+        self.rows[target].append(&mut self.sum);
     }
 
     /// The rows that are not empty, over the generators that occur in them.

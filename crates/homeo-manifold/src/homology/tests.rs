@@ -79,7 +79,7 @@ fn determinant(matrix: &[Vec<i64>]) -> IBig {
     let term = |column: usize| {
         let rest: Vec<Vec<i64>> = matrix[1..].iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect();
         let value = IBig::from(matrix[0][column]) * determinant(&rest);
-        if column % 2 == 0 { value } else { -value }
+        if column.is_multiple_of(2) { value } else { -value }
     };
     (0..matrix.len()).map(term).sum()
 }
