@@ -2,9 +2,9 @@
 //!
 //! A covering of `k` sheets takes each tetrahedron `k` times. Tetrahedra of a sheet are joined through the faces of a
 //! tree, and each other face leads from the sheets to the sheets by a permutation, such that the relations of the
-//! fundamental group hold: round an edge one comes back to one's sheet. So connected coverings are the ways in which the
-//! group permutes `k` sheets transitively, up to the names of sheets; they belong to the subgroups of index `k`, up to
-//! conjugation.
+//! fundamental group hold: round an edge one comes back to one's sheet. So connected coverings are the ways in which
+//! the group permutes `k` sheets transitively, up to the names of sheets; they belong to the subgroups of index `k`, up
+//! to conjugation.
 
 use crate::group::{FundamentalGroup, Letter};
 use crate::triangulation::Triangulation;
@@ -28,11 +28,11 @@ const MOST_STEPS: u64 = 100_000_000;
 /// All connected coverings with a number of sheets, up to isomorphism over the triangulation; vertices are cut off, so
 /// a covering may be branched at vertices but not at inner edges.
 ///
-/// Tetrahedron `t` in sheet `s` is the tetrahedron `t + n s` of a covering of `n` tetrahedra. The order of the coverings
-/// is the same on each run.
+/// Tetrahedron `t` in sheet `s` is the tetrahedron `t + n s` of a covering of `n` tetrahedra. The order of the
+/// coverings is the same on each run.
 ///
-/// Cost: up to `(k!)^g` steps for `g` generators, fewer the earlier the relations speak; for a handful of tetrahedra and
-/// four sheets it is under a second.
+/// Cost: up to `(k!)^g` steps for `g` generators, fewer the earlier the relations speak; for a handful of tetrahedra
+/// and four sheets it is under a second.
 ///
 /// # Errors
 /// No or more than six sheets; a triangulation in pieces; a search of more than 100 million steps.

@@ -1,13 +1,13 @@
 //! The text files of SnapPea and SnapPy, as far as they tell how tetrahedra are glued.
 //!
-//! Such a file begins with `% Triangulation`, a name, the kind and volume of a hyperbolic structure, whether the manifold
-//! is orientable, its Chern-Simons invariant, the numbers of torus and Klein bottle cusps and a line for each cusp; then
-//! the number of tetrahedra, and for each of them its four neighbours, the four gluings as images of 0, 1, 2, 3
-//! without spaces, the cusps at its corners, four rows of 16 numbers (meridian and longitude), and a shape. Source:
-//! "SnapPea Triangulation File Format", which comes with the SnapPea kernel. Structure, cusps, curves and shapes
-//! are passed over in reading. In writing there are no cusps and no curves, which that page allows: SnapPea then finds
-//! the cusps by itself, and takes vertices with spheres as links for inner points. SnapPea wants links that are tori,
-//! Klein bottles and spheres; files with others are for programs with the same format and geodesic boundary.
+//! Such a file begins with `% Triangulation`, a name, the kind and volume of a hyperbolic structure, whether the
+//! manifold is orientable, its Chern-Simons invariant, the numbers of torus and Klein bottle cusps and a line for each
+//! cusp; then the number of tetrahedra, and for each of them its four neighbours, the four gluings as images of 0, 1,
+//! 2, 3 without spaces, the cusps at its corners, four rows of 16 numbers (meridian and longitude), and a shape.
+//! Source: "SnapPea Triangulation File Format", which comes with the SnapPea kernel. Structure, cusps, curves and
+//! shapes are passed over in reading. In writing there are no cusps and no curves, which that page allows: SnapPea then
+//! finds the cusps by itself, and takes vertices with spheres as links for inner points. SnapPea wants links that are
+//! tori, Klein bottles and spheres; files with others are for programs with the same format and geodesic boundary.
 
 use crate::link::Links;
 use crate::permutation::Permutation;

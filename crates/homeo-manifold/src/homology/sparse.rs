@@ -15,8 +15,9 @@ pub(super) struct Reduced {
     pub rows: Vec<Vec<IBig>>,
 }
 
-/// Uses up all relations with an entry 1 or -1. Lightest rows come first, and in a row the generator in the fewest rows:
-/// this keeps the others light. A row with a single entry, which says that a generator vanishes, costs no arithmetic.
+/// Uses up all relations with an entry 1 or -1. Lightest rows come first, and in a row the generator in the fewest
+/// rows: this keeps the others light. A row with a single entry, which says that a generator vanishes, costs no
+/// arithmetic.
 pub(super) fn without_units(generators: usize, relations: &[Vec<(u32, i64)>]) -> Reduced {
     let mut matrix = Matrix::new(generators, relations);
     let mut waiting: BinaryHeap<_> = (0..matrix.rows.len()).map(|row| Reverse((matrix.rows[row].len(), row))).collect();
@@ -58,8 +59,8 @@ impl Matrix {
         units.map(|&(generator, _)| generator).min_by_key(|&generator| self.rows_of[generator as usize].len())
     }
 
-    /// Removes a generator from all rows by means of one, in which it has the coefficient 1 or -1, and that row with it.
-    /// The rows that have changed.
+    /// Removes a generator from all rows by means of one, in which it has the coefficient 1 or -1, and that row with
+    /// it. The rows that have changed.
     fn eliminate(&mut self, row: usize, generator: u32) -> Vec<usize> {
         let pivot_row = std::mem::take(&mut self.rows[row]);
         let Ok(place) = pivot_row.binary_search_by_key(&generator, |entry| entry.0) else { return Vec::new() };
