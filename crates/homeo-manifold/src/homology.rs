@@ -67,7 +67,7 @@ impl Homology {
     /// When a generator is not below `generators`.
     pub fn of_relations(generators: usize, relations: &[Vec<(u32, i64)>]) -> Self {
         let reduced = sparse::without_units(generators, relations);
-        let diagonal = dense::diagonal(reduced.rows);
+        let diagonal: Vec<_> = reduced.blocks.into_iter().flat_map(dense::diagonal).collect();
         let rank = reduced.generators - diagonal.len();
         Self { rank, torsion: divisors(diagonal) }
     }
