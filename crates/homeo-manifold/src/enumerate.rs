@@ -1,9 +1,9 @@
 //! All triangulations of a few tetrahedra.
 //!
-//! Every connected gluing has a labelling in which a face, unless it was glued before, leads to a new tetrahedron by the
-//! identity or to one that is known (see [`signature`](mod@crate::signature)). These labellings are gone through one by
-//! one; of those that are the same up to names, one is kept by its signature. For three tetrahedra they are 24,057, in place of
-//! the 6,928,416 labelled gluings.
+//! Every connected gluing has a labelling in which a face, unless it was glued before, leads to a new tetrahedron by
+//! the identity or to one that is known (see [`signature`](mod@crate::signature)). These labellings are gone through
+//! one by one; of those that are the same up to names, one is kept by its signature. For three tetrahedra they are
+//! 24,057, in place of the 6,928,416 labelled gluings.
 
 use crate::link::Links;
 use crate::permutation::Permutation;
@@ -48,8 +48,8 @@ pub struct Enumerated {
 }
 
 impl Enumerated {
-    /// The number of gluings with odd permutations alone that are this one, its mirror image counted, when tetrahedra and corners have
-    /// names: names can be chosen in `n! 2 12^n` ways, and automorphisms make some of them equal.
+    /// The number of gluings with odd permutations alone that are this one, its mirror image counted, when tetrahedra
+    /// and corners have names: names can be chosen in `n! 2 12^n` ways, and automorphisms make some of them equal.
     ///
     /// ```
     /// use homeo_manifold::{AllowedLinks, enumerate};
@@ -189,6 +189,7 @@ impl Labelling {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::homology::Homology;
     use crate::record::{read_record, read_records};
     use std::collections::BTreeSet;
 
@@ -239,6 +240,26 @@ mod tests {
         let higher = enumerate(2, AllowedLinks::Higher).unwrap();
         assert_eq!(higher, of_genera(&two, &[2]));
         assert_eq!((higher.len(), labelled(&higher)), (8, of_genus_two));
+    }
+
+    /// The homology of those whose links are spheres, each group once.
+    fn of_closed_manifolds(tetrahedra: usize) -> Vec<String> {
+        let found = enumerate(tetrahedra, AllowedLinks::Any).unwrap();
+        let closed = found.iter().filter(|found| found.genera.iter().all(|&genus| genus == 0));
+        closed.map(|found| Homology::new(&found.triangulation).to_string()).collect()
+    }
+
+    #[test]
+    fn closed_manifolds_of_one_and_two_tetrahedra_are_those_of_the_literature() {
+        // The 3-sphere twice, the lens spaces L(4,1) and L(5,2).
+        let mut one = of_closed_manifolds(1);
+        one.sort_unstable();
+        assert_eq!(one, ["0", "0", "Z_4", "Z_5"]);
+        // The 3-sphere, the 3-sphere modulo the quaternions, a sphere times a circle, L(2,1), L(3,1), L(5,1), L(7,2),
+        // L(8,3).
+        let two: BTreeSet<_> = of_closed_manifolds(2).into_iter().collect();
+        let expected = ["0", "2 Z_2", "Z", "Z_2", "Z_3", "Z_5", "Z_7", "Z_8"];
+        assert_eq!(two, expected.map(str::to_owned).into());
     }
 
     #[test]

@@ -15,8 +15,8 @@ pub struct Letter {
 
 /// A presentation of the fundamental group of a triangulation.
 ///
-/// The base point is in the first tetrahedron. A tree of glued faces joins all tetrahedra; each other glued face `(t, f)`
-/// is a generator: go through the tree to tetrahedron `t`, pass its face `f`, and go back through the tree. Round
+/// The base point is in the first tetrahedron. A tree of glued faces joins all tetrahedra; each other glued face `(t,
+/// f)` is a generator: go through the tree to tetrahedron `t`, pass its face `f`, and go back through the tree. Round
 /// an inner edge no face is passed in earnest, which is a relation. Vertices are cut off, whatever their links; for
 /// vertices with spheres or disks as links that changes nothing. The middle of an edge that is glued to itself end for
 /// end is cut off likewise. Of a triangulation in several pieces it is the free product of the groups of the pieces.

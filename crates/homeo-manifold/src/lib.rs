@@ -13,10 +13,12 @@
 //! | [`link`] | the surfaces that cut off the vertices; orientation |
 //! | [`group`] | the fundamental group: a generator for each face off a tree, a relation for each inner edge |
 //! | [`homology`] | first homology, by Smith normal form |
+//! | [`cover`] | coverings with few sheets |
 //! | [`mesh`] | from meshes and back |
 //! | [`subdivision`] | barycentric subdivision |
 //! | [`record`] | reading and writing gluings as JSON |
 //! | [`signature`](mod@signature) | isomorphism signatures, to and from |
+//! | [`snappea`] | the gluings of the text files of SnapPea and SnapPy |
 //! | [`enumerate`](mod@enumerate) | all closed triangulations of a few tetrahedra |
 //!
 //! Source: Yin 2010, section 4.2.1. The class of a vertex whose link is no sphere is *truncated*: cut off, it leaves the
@@ -34,6 +36,7 @@
 //! ```
 
 pub mod bundle;
+pub mod cover;
 pub mod enumerate;
 pub mod group;
 pub mod homology;
@@ -46,9 +49,11 @@ mod sample;
 pub mod signature;
 pub mod simplify;
 pub mod skeleton;
+pub mod snappea;
 pub mod subdivision;
 pub mod triangulation;
 
+pub use cover::{CoverError, covers};
 pub use enumerate::{AllowedLinks, Enumerated, EnumerationError, enumerate};
 pub use group::{FundamentalGroup, Letter};
 pub use homology::Homology;
@@ -58,5 +63,6 @@ pub use permutation::Permutation;
 pub use record::{Record, RecordError, read_record, read_record_of, read_records, write_record};
 pub use signature::{SignatureError, automorphism_count, from_signature, signature};
 pub use skeleton::{EdgeClass, EdgeCorner, Skeleton};
+pub use snappea::{SnapPeaError, read_snappea, write_snappea};
 pub use subdivision::subdivided;
 pub use triangulation::{Gluing, GluingError, Triangulation};

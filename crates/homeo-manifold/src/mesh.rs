@@ -28,8 +28,8 @@ pub enum MeshError {
 const MOST_CELLS: u64 = 1 << 30;
 
 impl Triangulation {
-    /// The triangulation of a mesh: tetrahedron `c` is cell `c`, its corner `i` the `i`-th vertex of the cell, and cells
-    /// with the same three vertices on a face are glued there.
+    /// The triangulation of a mesh: tetrahedron `c` is cell `c`, its corner `i` the `i`-th vertex of the cell, and
+    /// cells with the same three vertices on a face are glued there.
     ///
     /// Cells that share a vertex or an edge only are not glued: where a mesh is no manifold, a vertex may come apart
     /// into several. Cost: linear for meshes of bounded degree.
@@ -83,10 +83,10 @@ impl Triangulation {
     ///
     /// The triangulation itself is one, if no two simplices have the same vertices. It is subdivided barycentrically
     /// once where that is not so but each tetrahedron has four different vertices, and twice otherwise. Fewer do not
-    /// suffice, as `docs/theory/triangulations.md` proves, but perhaps where an edge is glued to itself end for end. Links
-    /// of vertices keep their kind, and the new vertices have spheres as links, or disks at the boundary; only the middle of
-    /// an edge that is glued to itself end for end has a projective plane. If the triangulation is orientable, the
-    /// cells are ordered consistently.
+    /// suffice, as `docs/theory/triangulations.md` proves, but perhaps where an edge is glued to itself end for end.
+    /// Links of vertices keep their kind, and the new vertices have spheres as links, or disks at the boundary; only
+    /// the middle of an edge that is glued to itself end for end has a projective plane. If the triangulation is
+    /// orientable, the cells are ordered consistently.
     ///
     /// Cost: linear in the number of cells, which is that of tetrahedra times 1, 24 or 576.
     ///

@@ -1,10 +1,10 @@
 //! Records of gluings as JSON: what a census of triangulations is kept in.
 //!
-//! A record is an object with the fields `tetrahedra` and `gluings`, and perhaps `isoSig`; other fields are passed over.
-//! A row of `gluings` is `[tetrahedron, face, other tetrahedron, [p0, p1, p2, p3]]`: the face opposite the corner `face`
-//! is glued to the face of the other tetrahedron opposite `p[face]`, and the corner `i` goes to the corner `p[i]`. Every
-//! gluing has two rows, one from each side; a face without a row is boundary. A file is one record, an object with a
-//! record under `triangulation`, or an object with a list of records under `triangulations`.
+//! A record is an object with the fields `tetrahedra` and `gluings`, and perhaps `isoSig`; other fields are passed
+//! over. A row of `gluings` is `[tetrahedron, face, other tetrahedron, [p0, p1, p2, p3]]`: the face opposite the corner
+//! `face` is glued to the face of the other tetrahedron opposite `p[face]`, and the corner `i` goes to the corner
+//! `p[i]`. Every gluing has two rows, one from each side; a face without a row is boundary. A file is one record, an
+//! object with a record under `triangulation`, or an object with a list of records under `triangulations`.
 
 use crate::permutation::Permutation;
 use crate::triangulation::{Gluing, GluingError, Triangulation};

