@@ -11,6 +11,7 @@
 //! | [`triangulation`] | tetrahedra and the gluings of their faces |
 //! | [`skeleton`] | the classes of vertices, edges and faces, and what is round each edge |
 //! | [`link`] | the surfaces that cut off the vertices; orientation |
+//! | [`hyperbolic`] | hyperbolic structures with geodesic boundary, with proofs |
 //!
 //! Source: Yin 2010, section 4.2.1. The class of a vertex whose link is no sphere is *truncated*: cut off, it leaves the
 //! link as a component of the boundary.
@@ -26,6 +27,7 @@
 //! # Ok::<(), homeo_manifold::GluingError>(())
 //! ```
 
+pub mod hyperbolic;
 pub mod link;
 pub mod permutation;
 pub mod skeleton;

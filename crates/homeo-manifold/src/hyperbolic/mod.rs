@@ -1,0 +1,17 @@
+//! Hyperbolic structures with geodesic boundary: every tetrahedron a truncated one in hyperbolic space.
+
+mod dense;
+mod enclosure;
+mod equations;
+mod obstruction;
+mod refusal;
+mod solve;
+#[cfg(test)]
+pub(crate) mod testing;
+mod tetrahedron;
+
+pub use enclosure::{Enclosure, Real};
+pub use obstruction::Obstruction;
+pub use refusal::NoMetric;
+pub use solve::{Approximation, Method, flow, solve};
+pub use tetrahedron::Tetrahedron;
