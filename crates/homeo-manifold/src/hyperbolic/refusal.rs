@@ -49,6 +49,11 @@ pub enum NoMetric {
     Degenerate { tetrahedron: u32 },
     #[error("no structure was found in {steps} steps (curvature {curvature:.1e}); this proves nothing; retriangulate")]
     NotFound { steps: usize, curvature: f64 },
+    #[error(
+        "Krawczyk's test does not prove that there is a structure near the lengths, whose curvatures are {curvature:.1e} in \
+         floating point: tetrahedra are too nearly flat for doubles, or there is none; retriangulate"
+    )]
+    NotProved { curvature: f64 },
 }
 
 impl NoMetric {
@@ -64,7 +69,11 @@ impl NoMetric {
         match self {
             Self::Empty | Self::OpenFace { .. } | Self::ReversedEdge { .. } => true,
             Self::VertexLink { .. } | Self::LowDegree { .. } | Self::NoAngles { .. } => true,
-            Self::NotOrientable | Self::Escapes { .. } | Self::Degenerate { .. } | Self::NotFound { .. } => false,
+            Self::NotProved { .. }
+            | Self::NotOrientable
+            | Self::Escapes { .. }
+            | Self::Degenerate { .. }
+            | Self::NotFound { .. } => false,
         }
     }
 }

@@ -77,6 +77,22 @@ impl<R: Real> Tetrahedron<R> {
         [0, 1, 2, 3, 4, 5].map(|edge| R::angle(self.cofactors[edge], self.sinh[edge] * root))
     }
 
+    /// Cosine and sine of each dihedral angle, where `Δ` is positive.
+    pub(super) fn directions(&self) -> [[R; 2]; 6] {
+        let root = self.discriminant.sqrt();
+        [0, 1, 2, 3, 4, 5].map(|edge| {
+            let [k, l] = EDGES[5 - edge].map(usize::from);
+            let size = (self.faces[k] * self.faces[l]).sqrt();
+            [self.cofactors[edge] / size, self.sinh[edge] * root / size]
+        })
+    }
+
+    /// The root of minus the determinant of the Gram matrix of the angles: `Δ sqrt(Δ) / sqrt(D_0 D_1 D_2 D_3)`.
+    pub(super) fn angle_root(&self) -> R {
+        let [a, b, c, d] = self.faces;
+        self.discriminant * self.discriminant.sqrt() / (a * b * c * d).sqrt()
+    }
+
     /// The derivatives of the angles (rows) by the lengths, where `Δ` is positive; symmetric by Schläfli's formula, and
     /// positive definite.
     ///
