@@ -2,8 +2,10 @@
 
 mod clausen;
 mod dense;
+mod embedding;
 mod enclosure;
 mod equations;
+pub mod minkowski;
 mod obstruction;
 mod proof;
 mod refusal;
@@ -13,6 +15,7 @@ pub(crate) mod testing;
 mod tetrahedron;
 mod volume;
 
+pub use embedding::{Embedding, Patches, Piece, SidePairing};
 pub use enclosure::{Enclosure, Real};
 pub use obstruction::Obstruction;
 pub use proof::{Structure, prove};
