@@ -278,7 +278,7 @@ fn sums(class: &[[usize; 6]], cosh: &[f64]) -> Option<Vec<f64>> {
             let [k, l] = EDGES[5 - edge];
             let (a, b, c) = (side(i, j, k), side(i, j, l), side(i, k, l));
             let cosine = (a * b - c) / ((a * a - 1.0) * (b * b - 1.0)).sqrt();
-            if !(cosine.abs() < 1.0) {
+            if cosine.is_nan() || cosine.abs() >= 1.0 {
                 return None;
             }
             sums[six[edge]] += cosine.acos();

@@ -162,7 +162,7 @@ impl Enclosure {
     /// ```
     /// use homeo_manifold::hyperbolic::Enclosure;
     /// let eighth = Enclosure::exact(1.0).arctangent() * Enclosure::exact(4.0);
-    /// assert!(eighth.holds(std::f64::consts::PI) && eighth.width() < 1e-14);
+    /// assert!(eighth.holds(std::f64::consts::PI) && eighth.width() < 1e-13);
     /// ```
     #[must_use]
     pub fn arctangent(self) -> Self {

@@ -107,7 +107,7 @@ pub fn mobius(isometry: &Isometry) -> Option<[[[f64; 2]; 2]; 2]> {
     // The pivot is the larger entry of the first column, taken as real and positive.
     let pivot = usize::from(first[1][1][0] > first[0][0][0]);
     let size = first[pivot][pivot][0].sqrt();
-    if !(size > 1e-8) {
+    if size.is_nan() || size <= 1e-8 {
         return None;
     }
     let column = [0, 1].map(|row| first[row][pivot].map(|x| x / size));

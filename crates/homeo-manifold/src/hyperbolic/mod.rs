@@ -1,4 +1,15 @@
 //! Hyperbolic structures with geodesic boundary: every tetrahedron a truncated one in hyperbolic space.
+//!
+//! | what | where |
+//! |---|---|
+//! | [`Tetrahedron`], [`Volumes`] | one tetrahedron: angles, their slopes, volume |
+//! | [`solve`](solve()), [`flow`] | lengths for which angles add up to 2π round every edge, in floating point |
+//! | [`Structure`], [`prove`] | the same with a proof, in enclosures ([`Enclosure`]) |
+//! | [`NoMetric`], [`Obstruction`] | why there is none, with a proof where there is one |
+//! | [`Embedding`], [`minkowski`] | fundamental domain and universal cover in hyperbolic space |
+//!
+//! Source: Yin 2010, sections 4.3 and 4.4. Theorems and proofs: `docs/theory/hyperbolic.md`; for users:
+//! `docs/methods/hyperbolic.md`.
 
 mod clausen;
 mod dense;

@@ -62,7 +62,7 @@ pub struct Approximation {
 /// let rows = rows.map(|(face, images)| (0, face, 1, Permutation::new(images).unwrap()));
 /// let tripus = Triangulation::from_gluings(2, &rows)?;
 /// let found = solve(&tripus, &Skeleton::new(&tripus))?;
-/// // cosh l = (3 + 2 sqrt(3) + ...) / ...: cos t / (2 cos t - 1) for the angles t = π / 6.
+/// // cosh l = cos t / (2 cos t - 1), for the angles t = π / 6.
 /// let cosine = std::f64::consts::FRAC_PI_6.cos();
 /// assert!((found.lengths[0].cosh() - cosine / (2.0 * cosine - 1.0)).abs() < 1e-13);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
