@@ -240,6 +240,11 @@ impl Real for Enclosure {
     }
 
     fn angle(cosine: Self, sine: Self) -> Self {
+        // Each branch is right only where the sign of what it divides by is known.
+        let divisor = if cosine.middle().abs() >= sine.middle().abs() { cosine } else { sine };
+        if !divisor.is_positive() && !(-divisor).is_positive() {
+            return Self::WHOLE;
+        }
         if cosine.middle().abs() >= sine.middle().abs() {
             let near_axis = (sine / cosine).arctangent();
             return if cosine.middle() > 0.0 { near_axis } else { near_axis + Self::pi() };
@@ -321,6 +326,12 @@ mod tests {
                 assert!(found.low() > -1e-14 && found.high() < PI + 1e-14);
             }
         }
+    }
+
+    #[test]
+    fn nothing_is_said_of_the_angle_of_a_box_round_the_origin() {
+        let (cosine, sine) = (Enclosure::between(-1.0, 3.0), Enclosure::between(0.5, 1.0));
+        assert_eq!(Enclosure::angle(cosine, sine), Enclosure::WHOLE);
     }
 
     #[test]

@@ -198,8 +198,9 @@ impl<'a> Test<'a> {
             let is_inside = image.iter().zip(&wide).all(|(image, wide)| image.is_inside(*wide));
             is_inside.then_some((radius, image))
         })?;
-        // The zero is in the image; the image of the image is narrower, where slopes are.
-        let second = self.image(&first)?;
+        // The zero is in the image; slopes between it and the centre give a narrower one.
+        let hull = |(image, &x): (&Enclosure, &f64)| Enclosure::between(image.low().min(x), image.high().max(x));
+        let second = self.image(&first.iter().zip(&self.centre).map(hull).collect::<Vec<_>>())?;
         let cosh = first.iter().zip(second).map(|(a, b)| a.common(b)).collect::<Option<Vec<_>>>()?;
         Some(BoxFound { centre: self.centre, radius, cosh })
     }

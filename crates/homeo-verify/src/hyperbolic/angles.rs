@@ -59,6 +59,7 @@ impl Sub for Jet {
 
 impl Mul for Jet {
     type Output = Self;
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "the product rule has a sum")]
     fn mul(self, other: Self) -> Self {
         let slope = |k: usize| self.value * other.slopes[k] + self.slopes[k] * other.value;
         Self { value: self.value * other.value, slopes: [0, 1, 2, 3, 4, 5].map(slope) }
