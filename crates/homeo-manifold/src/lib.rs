@@ -20,6 +20,7 @@
 //! | [`signature`](mod@signature) | isomorphism signatures, to and from |
 //! | [`snappea`] | the gluings of the text files of SnapPea and SnapPy |
 //! | [`enumerate`](mod@enumerate) | all closed triangulations of a few tetrahedra |
+//! | [`hyperbolic`] | hyperbolic structures with geodesic boundary, with proofs |
 //!
 //! Source: Yin 2010, section 4.2.1. The class of a vertex whose link is no sphere is *truncated*: cut off, it leaves the
 //! link as a component of the boundary.
@@ -40,6 +41,7 @@ pub mod cover;
 pub mod enumerate;
 pub mod group;
 pub mod homology;
+pub mod hyperbolic;
 pub mod link;
 pub mod mesh;
 pub mod permutation;

@@ -56,7 +56,48 @@ impl Ball {
         let middle = 1.0 / self.middle;
         Ball::rounded(middle, self.radius * middle.abs() / least)
     }
+
+    /// The circle's number; the constant is the double next to it.
+    pub(crate) fn pi() -> Ball {
+        Ball { middle: std::f64::consts::PI, radius: 2.0 * f64::EPSILON }
+    }
+
+    /// The square root; unknown unless all numbers in the ball are positive.
+    pub(crate) fn sqrt(self) -> Ball {
+        if !self.is_positive() {
+            return Ball::UNKNOWN;
+        }
+        // |sqrt x - sqrt m| = |x - m| / (sqrt x + sqrt m) <= r / sqrt m.
+        let middle = self.middle.sqrt();
+        Ball::rounded(middle, self.radius / middle)
+    }
+
+    /// The angle with this tangent, between minus and plus a quarter turn.
+    pub(crate) fn arctangent(self) -> Ball {
+        let mut tangent = Ball::exact(self.middle);
+        for _ in 0..HALVINGS {
+            // tan(a / 2) = t / (1 + sqrt(1 + t^2))
+            tangent = tangent * (Ball::ONE + (Ball::ONE + tangent * tangent).sqrt()).inverse();
+        }
+        let square = tangent * tangent;
+        let mut sum = Ball::ZERO;
+        for k in (0..TERMS).rev() {
+            sum = Ball::exact(f64::from(2 * k + 1)).inverse() - sum * square;
+        }
+        // The series alternates: what is left out is below its first term, |t| 0.1^20 / 21.
+        sum.radius += 1e-21;
+        let middle = sum * tangent * Ball::exact(f64::from(1 << HALVINGS));
+        // The slope is 1 / (1 + x^2).
+        let least = ((self.middle.abs() - self.radius) * (1.0 - f64::EPSILON)).max(0.0);
+        let radius = middle.radius + self.radius / (1.0 + least * least);
+        Ball { middle: middle.middle, radius: radius * UPWARDS }
+    }
 }
+
+/// Halvings of an angle: from a quarter turn to less than 0.0982, whose tangent is below 0.1.
+const HALVINGS: u32 = 4;
+/// Terms of the arctangent's series.
+const TERMS: u32 = 10;
 
 impl Add for Ball {
     type Output = Ball;
@@ -233,6 +274,23 @@ mod tests {
             assert!(!ball.is_positive() && !ball.is_negative());
             assert!(!(ball.inverse() * ball).is_negative() && !ball.inverse().is_positive());
         }
+    }
+
+    #[test]
+    fn roots_and_angles_are_in_their_balls() {
+        let mut count = 0;
+        for &x in doubles().iter().filter(|x| (1e-20..1e20).contains(&x.abs())) {
+            let root = Ball::exact(x.abs()).sqrt();
+            assert_eq!(holds(root * root, &exact(x.abs())), Some(true), "{x}");
+            // The addition theorem, and no other: arctan x + arctan(1/x) is a quarter turn.
+            let sum = Ball::exact(x.abs()).arctangent() + Ball::exact(x.abs()).inverse().arctangent();
+            let gap = sum + sum - Ball::pi();
+            assert!(gap.middle.abs() <= gap.radius && gap.radius < 1e-13, "{x} {gap:?}");
+            assert!((Ball::exact(x).arctangent().middle - x.atan()).abs() < 1e-14);
+            count += 1;
+        }
+        assert!(count > 5, "{count}");
+        assert!(!Ball::ZERO.sqrt().is_positive() && !Ball::between(-1.0, 2.0).sqrt().is_positive());
     }
 
     #[test]

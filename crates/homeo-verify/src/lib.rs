@@ -9,7 +9,8 @@
 //! 3. `source` (rules S, 8), `subdivision` (R), `foliation` (1-6, 8), `section` (7), `piecewise_linear` (P, 7);
 //! 4. `triangles`, `shell` (L1-L6, of `docs/theory/shells.md`);
 //! 5. `rings` (D), `harmonic` (H1-H5, of `docs/theory/polygons.md`);
-//! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3.
+//! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3;
+//! 7. `hyperbolic` (Y1-Y7, of `docs/theory/hyperbolic.md`).
 //!
 //! # Complexity
 //! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file. For
@@ -22,6 +23,7 @@ mod complex;
 mod composite;
 mod foliation;
 mod harmonic;
+mod hyperbolic;
 mod links;
 mod manifest;
 mod map_file;
@@ -173,6 +175,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::Shell => ("shell", "theorem on shells, rules L1-L6"),
         Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
         Kind::CompositeMeanValue => ("composite-mean-value", "theorem on composite mean value maps, rules D and C1-C3"),
+        Kind::Hyperbolic => ("hyperbolic", "theorem on glued truncated tetrahedra, rules Y1-Y7"),
     };
     let (target, onto) = match map.manifest.target {
         Target::Square => ("square", "square [0,1]^2"),
@@ -186,6 +189,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::Polygon => ("polygon", "target polygon"),
         Target::Annulus => ("annulus", "target polygon with a hole"),
         Target::Domain => ("domain", "target polygon with holes"),
+        Target::GeodesicBoundary => ("geodesic-boundary", "manifold"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
     let mut statement = format!(
@@ -228,13 +232,26 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         );
         overlaps = "Nothing is said of how much it distorts.";
     }
+    if let MapData::Hyperbolic(data) = &map.data {
+        let (tetrahedra, edges) = (data.gluings.len() / 4, data.cosh_lengths.len());
+        statement = format!(
+            "The manifold of {tetrahedra} glued tetrahedra, its vertices cut off, has a complete hyperbolic structure with \
+             totally geodesic boundary, made of truncated tetrahedra; the hyperbolic cosines of the lengths of its {edges} \
+             edges are in the stated box, and are the only ones there ({theorem})."
+        );
+        overlaps = "By Mostow and Prasad it is the only such structure of the manifold; the checker relies on this theorem for it.";
+    }
     let limits = [
         match &map.data {
+            MapData::Hyperbolic(_) => "The claim is about the gluing in the file and the box round the stored numbers.",
             MapData::Composite(_) => "The claim is about the exact mean value maps of the polygons in the file.",
             _ => "The claim is about the complex with these cells and the exact rational map that the file defines.",
         },
         overlaps,
-        "Evaluation in floating point approximates this map; it is not the certified object.",
+        match &map.data {
+            MapData::Hyperbolic(_) => "Angles and volume that a program prints are not in the file.",
+            _ => "Evaluation in floating point approximates this map; it is not the certified object.",
+        },
     ];
     Ok(Claim {
         statement,
@@ -257,6 +274,9 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
     if let MapData::Composite(data) = &map.data {
         return composite::check_composite(data);
     }
+    if let MapData::Hyperbolic(data) = &map.data {
+        return hyperbolic::check_hyperbolic(data, map.manifest.source.vertices);
+    }
     let source = source::check_source(map)?;
     let refined = match &map.refinement {
         Some(refinement) => Some(subdivision::check_subdivision(map, refinement, &source)?),
@@ -277,7 +297,7 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
             piecewise_linear::check_onto_box(complex, |v| images[v as usize], "P")?;
             checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
         }
-        MapData::Shell(_) | MapData::Harmonic(_) | MapData::Composite(_) => {} // above
+        MapData::Shell(_) | MapData::Harmonic(_) | MapData::Composite(_) | MapData::Hyperbolic(_) => {} // above
     }
     Ok(checked)
 }

@@ -30,6 +30,9 @@ pub(crate) enum Target {
     Annulus,
     /// A planar domain with several holes.
     Domain,
+    /// A hyperbolic structure with geodesic boundary.
+    #[serde(rename = "geodesic-boundary")]
+    GeodesicBoundary,
 }
 
 impl Target {
@@ -45,7 +48,7 @@ impl Target {
 
     /// Vertices of a cell: three or four.
     pub(crate) fn cell_size(self) -> usize {
-        if matches!(self, Target::Cube | Target::Ball) { 4 } else { 3 }
+        if matches!(self, Target::Cube | Target::Ball | Target::GeodesicBoundary) { 4 } else { 3 }
     }
 }
 
@@ -58,6 +61,7 @@ pub(crate) enum Kind {
     Shell,
     CompositeHarmonic,
     CompositeMeanValue,
+    Hyperbolic,
 }
 
 /// What the manifest claims.
@@ -128,6 +132,9 @@ impl Manifest {
         let has_holes = manifest.target == Target::Domain;
         let is_possible = !has_holes || manifest.kind == Kind::CompositeMeanValue;
         readable(is_possible, "only composite mean value maps have a target with several holes")?;
+        let is_hyperbolic = manifest.kind == Kind::Hyperbolic;
+        let is_geodesic = manifest.target == Target::GeodesicBoundary;
+        readable(is_hyperbolic == is_geodesic, "kind hyperbolic and target geodesic-boundary belong together")?;
         Ok(manifest)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::archive::Archive;
 use crate::manifest::{Kind, Manifest, Target};
-use crate::npy::{Array, I1, I8, U4};
+use crate::npy::{Array, F8, I1, I8, U4};
 use crate::number::Point;
 use crate::verdict::{Unreadable, readable, unreadable};
 use sha2::{Digest, Sha256};
@@ -32,6 +32,7 @@ pub(crate) enum MapData {
     Shell(ShellData),
     Harmonic(HarmonicData),
     Composite(CompositeData),
+    Hyperbolic(HyperbolicData),
 }
 
 /// The arrays of a foliation; the section is empty for the ball.
@@ -79,6 +80,16 @@ pub(crate) struct CompositeData {
     pub(crate) tilings: Vec<TilingData>,
 }
 
+/// The arrays of a hyperbolic structure.
+pub(crate) struct HyperbolicData {
+    /// For each face of each tetrahedron the other tetrahedron, and where the corners go.
+    pub(crate) gluings: Vec<[u32; 5]>,
+    /// Hyperbolic cosines of the lengths of the edges: the centre of a box.
+    pub(crate) cosh_lengths: Vec<f64>,
+    /// Half the side of the box.
+    pub(crate) radius: f64,
+}
+
 /// Triangles that tile a domain.
 pub(crate) struct TilingData {
     /// Corners that are no vertices of the domain, numbered after these.
@@ -115,6 +126,12 @@ impl MapFile {
             let positions = data.stages[0].clone();
             let data = MapData::Composite(data);
             return Ok(MapFile { manifest, positions, cells: vec![], refinement: None, data });
+        }
+        if manifest.kind == Kind::Hyperbolic {
+            let data = HyperbolicData::read(&mut archive, &manifest)?;
+            all_taken(&archive)?;
+            let data = MapData::Hyperbolic(data);
+            return Ok(MapFile { manifest, positions: vec![], cells: vec![], refinement: None, data });
         }
         let (positions, cells) = read_source(&mut archive, &manifest)?;
         let size = manifest.target.cell_size();
@@ -176,7 +193,7 @@ fn all_taken(archive: &Archive) -> Result<(), Unreadable> {
 }
 
 /// SHA-256 of the arrays of a source: its counts, then the elements as stored.
-fn source_hash(counts: [usize; 3], arrays: [&Array; 2]) -> String {
+fn source_hash(counts: [usize; 3], arrays: &[&Array]) -> String {
     let mut hasher = Sha256::new();
     counts.iter().for_each(|&count| hasher.update((count as u64).to_le_bytes()));
     arrays.iter().for_each(|array| hasher.update(array.content));
@@ -187,7 +204,7 @@ fn source_hash(counts: [usize; 3], arrays: [&Array; 2]) -> String {
 fn read_source(archive: &mut Archive, manifest: &Manifest) -> Result<(Vec<Point>, Vec<u32>), Unreadable> {
     let (positions, cells) = (Array::take(archive, "source_positions")?, Array::take(archive, "source_cells")?);
     let (source, size) = (&manifest.source, manifest.target.cell_size());
-    let hash = source_hash([source.vertices, size, source.cells], [&positions, &cells]);
+    let hash = source_hash([source.vertices, size, source.cells], &[&positions, &cells]);
     let source_arrays = (positions.read_points(None, 3)?, cells.read(U4, None, size)?);
     let is_counted = (source_arrays.0.len(), source_arrays.1.len() / size) == (source.vertices, source.cells);
     readable(is_counted, "the source has another number of vertices or cells than the manifest says")?;
@@ -225,7 +242,7 @@ impl FoliationData {
 /// The vertices of a planar source and the sizes of its rings, when it is the one of the manifest.
 fn read_planar_source(archive: &mut Archive, manifest: &Manifest) -> Result<(Vec<Point>, Vec<u32>), Unreadable> {
     let (points, rings) = (Array::take(archive, "source_points")?, Array::take(archive, "source_rings")?);
-    let hash = source_hash([manifest.source.vertices, 2, manifest.source.cells], [&points, &rings]);
+    let hash = source_hash([manifest.source.vertices, 2, manifest.source.cells], &[&points, &rings]);
     let (source_points, ring_sizes) = (points.read_points(None, 2)?, rings.read(U4, None, 1)?);
     let is_counted = (source_points.len(), ring_sizes.len()) == (manifest.source.vertices, manifest.source.cells);
     readable(is_counted, "the source has another number of vertices or rings than the manifest says")?;
@@ -240,6 +257,21 @@ fn read_planar_source(archive: &mut Archive, manifest: &Manifest) -> Result<(Vec
     };
     readable(is_as_said, "a polygon has one ring, an annulus two, a domain more")?;
     Ok((source_points, ring_sizes))
+}
+
+impl HyperbolicData {
+    fn read(archive: &mut Archive, manifest: &Manifest) -> Result<Self, Unreadable> {
+        let array = Array::take(archive, "gluings")?;
+        let source = &manifest.source;
+        let hash = source_hash([source.vertices, 4, source.cells], &[&array]);
+        let gluings = array.read(U4, None, 5)?.as_chunks().0.to_vec();
+        let is_counted = gluings.len() % 4 == 0 && gluings.len() / 4 == source.cells;
+        readable(is_counted, "gluings does not have four rows for each tetrahedron of the manifest")?;
+        readable(hash == source.content_sha256, "the gluings do not have the stated content_sha256")?;
+        let cosh_lengths = Array::take(archive, "cosh_lengths")?.read(F8, None, 1)?;
+        let radius = Array::take(archive, "radius")?.read(F8, Some(1), 1)?[0];
+        Ok(HyperbolicData { gluings, cosh_lengths, radius })
+    }
 }
 
 impl CompositeData {

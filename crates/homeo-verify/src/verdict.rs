@@ -27,10 +27,10 @@ pub enum Verdict {
 pub struct Claim {
     /// The claim in words, with the theorem that was applied.
     pub statement: String,
-    /// `foliation`, `piecewise-linear`, `shell`, `composite-harmonic` or `composite-mean-value`.
+    /// `foliation`, `piecewise-linear`, `shell`, `composite-harmonic`, `composite-mean-value` or `hyperbolic`.
     pub kind: String,
     /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon`,
-    /// `annulus` or `domain`.
+    /// `annulus`, `domain` or `geodesic-boundary`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]

@@ -12,6 +12,9 @@ mod certificate_format {}
 #[doc = include_str!("../../../docs/methods/foliation.md")]
 mod methods_foliation {}
 
+#[doc = include_str!("../../../docs/methods/hyperbolic.md")]
+mod methods_hyperbolic {}
+
 #[doc = include_str!("../../../docs/theory/balls.md")]
 mod theory_balls {}
 

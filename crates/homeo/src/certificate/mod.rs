@@ -8,7 +8,9 @@ mod read;
 mod write;
 
 pub use read::{MapFileError, read_map};
-pub use write::{content_sha256, write_composite, write_harmonic, write_map, write_planar, write_shell};
+pub use write::{
+    content_sha256, write_composite, write_harmonic, write_hyperbolic, write_map, write_planar, write_shell,
+};
 
 use homeo_core::number::Rational;
 

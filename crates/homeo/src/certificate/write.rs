@@ -4,6 +4,8 @@ use std::io::{self, Seek, Write};
 
 use homeo_core::mesh::VertexId;
 use homeo_core::planar::{PlanarDomain, Point2};
+use homeo_manifold::hyperbolic::Structure;
+use homeo_manifold::{Skeleton, Triangulation};
 use serde_json::json;
 use sha2::{Digest, Sha256};
 use zip::write::SimpleFileOptions;
@@ -107,6 +109,57 @@ pub fn write_harmonic(map: &HarmonicMap, provenance: &Provenance, out: &mut (imp
             archive.array(&format!("{name}_shifts"), &[parts.shifts.len(), 3], shifts)?;
         }
     }
+    archive.finish()
+}
+
+/// Writes a hyperbolic structure with what its certificate needs. The same structure gives the same bytes.
+///
+/// # Errors
+/// When `out` cannot be written, and for a triangulation with a face that is not glued, or with another number of edges than
+/// the structure.
+pub fn write_hyperbolic(
+    triangulation: &Triangulation,
+    structure: &Structure,
+    provenance: &Provenance,
+    out: &mut (impl Write + Seek),
+) -> io::Result<()> {
+    let skeleton = Skeleton::new(triangulation);
+    if skeleton.edges().len() != structure.centre().len() {
+        return Err(io::Error::other("the structure is that of another triangulation"));
+    }
+    let row = |(tetrahedron, face)| {
+        let gluing = triangulation.neighbour(tetrahedron, face)?;
+        let [a, b, c, d] = gluing.corners.images().map(u32::from);
+        Some([gluing.tetrahedron, a, b, c, d])
+    };
+    let rows: Option<Vec<[u32; 5]>> = triangulation.faces().map(row).collect();
+    let rows = rows.ok_or_else(|| io::Error::other("a face of the triangulation is not glued"))?;
+    let mut hashed = Vec::new();
+    for count in [skeleton.vertex_count(), 4, triangulation.len()] {
+        hashed.extend((count as u64).to_le_bytes());
+    }
+    rows.as_flattened().iter().for_each(|x| x.put(&mut hashed));
+    let content: String = Sha256::digest(&hashed).iter().map(|byte| format!("{byte:02x}")).collect();
+    let manifest = json!({
+        "format": "homeo",
+        "version": 1,
+        "kind": "hyperbolic",
+        "dimension": 3,
+        "target": "geodesic-boundary",
+        "centre": null,
+        "source": {
+            "name": provenance.source_name,
+            "vertices": skeleton.vertex_count(),
+            "cells": triangulation.len(),
+            "content_sha256": content,
+        },
+        "construction": {"program": provenance.program, "options": provenance.options},
+    });
+    let mut archive = Archive { zip: ZipWriter::new(out) };
+    archive.add("manifest.json", &serde_json::to_vec_pretty(&manifest).map_err(io::Error::other)?)?;
+    archive.array("gluings", &[rows.len(), 5], rows.as_flattened().iter().copied())?;
+    archive.array("cosh_lengths", &[structure.centre().len()], structure.centre().iter().copied())?;
+    archive.array("radius", &[1], std::iter::once(structure.radius()))?;
     archive.finish()
 }
 

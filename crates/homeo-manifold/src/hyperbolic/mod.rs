@@ -1,0 +1,36 @@
+//! Hyperbolic structures with geodesic boundary: every tetrahedron a truncated one in hyperbolic space.
+//!
+//! | what | where |
+//! |---|---|
+//! | [`Tetrahedron`], [`Volumes`] | one tetrahedron: angles, their slopes, volume |
+//! | [`solve`](solve()), [`flow`] | lengths for which angles add up to 2π round every edge, in floating point |
+//! | [`Structure`], [`prove`] | the same with a proof, in enclosures ([`Enclosure`]) |
+//! | [`NoMetric`], [`Obstruction`] | why there is none, with a proof where there is one |
+//! | [`Embedding`], [`minkowski`] | fundamental domain and universal cover in hyperbolic space |
+//!
+//! Source: Yin 2010, sections 4.3 and 4.4. Theorems and proofs: `docs/theory/hyperbolic.md`; for users:
+//! `docs/methods/hyperbolic.md`.
+
+mod clausen;
+mod dense;
+mod embedding;
+mod enclosure;
+mod equations;
+pub mod minkowski;
+mod obstruction;
+mod proof;
+mod refusal;
+mod solve;
+#[cfg(test)]
+pub(crate) mod testing;
+mod tetrahedron;
+mod volume;
+
+pub use embedding::{Embedding, Patches, Piece, SidePairing};
+pub use enclosure::{Enclosure, Real};
+pub use obstruction::Obstruction;
+pub use proof::{Structure, prove};
+pub use refusal::NoMetric;
+pub use solve::{Approximation, Method, flow, solve};
+pub use tetrahedron::Tetrahedron;
+pub use volume::Volumes;
