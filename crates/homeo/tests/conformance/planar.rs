@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::io::Cursor;
 
 use homeo::certificate::{PlanarMap, Provenance, StoredMap, read_map, write_composite, write_harmonic};
+use homeo::complex::{ComplexMap, ComplexParams};
 use homeo::composite::{CompositeMap, PartitionParams};
 use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
 use homeo::map::{HarmonicMap, PlanarBijection, PlanarEvaluationError};
@@ -270,6 +271,18 @@ fn composite_mean_value_maps_obey_the_same_laws() {
         assert!(info.least_determinant > 0.0 && info.bounds.iter().all(|&bound| bound > 0.0));
         check_any(&map, &pair);
         check_composite_file(&map, &pair);
+    }
+}
+
+#[test]
+fn complex_maps_obey_the_same_laws() {
+    let arrow = vec![vec![[0.0, 0.0], [1.0, 0.0], [0.45, 0.4], [0.0, 1.0]]];
+    let rounder = vec![round(10, |angle| 0.9 + 0.1 * (5.0 * angle).cos(), 0.1)];
+    let turned = pair(ring(0.0, [0.0, 0.0]), ring(0.3, [0.05, 0.0]));
+    for pair in [pair(square(), arrow), pair(vec![round(10, |_| 1.0, 0.0)], rounder), turned] {
+        let (map, info) = ComplexMap::build(&pair, &ComplexParams::default(), &Silent).expect("a map");
+        assert!(info.least_determinant > 0.0);
+        check_any(&map, &pair);
     }
 }
 
