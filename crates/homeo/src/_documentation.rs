@@ -12,6 +12,9 @@ mod certificate_format {}
 #[doc = include_str!("../../../docs/methods/foliation.md")]
 mod methods_foliation {}
 
+#[doc = include_str!("../../../docs/methods/complex.md")]
+mod methods_complex {}
+
 #[doc = include_str!("../../../docs/theory/balls.md")]
 mod theory_balls {}
 

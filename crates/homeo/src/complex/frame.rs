@@ -255,13 +255,25 @@ impl<'a, T: Number> Frame<'a, T> {
                 (x, x * (one - x))
             }
         };
-        let mut quotient = Dual::constant(T::of(0.0));
-        for &coefficient in self.quotients[i].iter().rev() {
-            quotient = quotient * x + Dual::constant(coefficient);
-        }
-        let deviation = product * quotient;
+        let deviation = product * self.quotient(i, x);
         let real = self.tangents[i] * (own + after) * deviation;
         let imaginary = factor * (after - own) * deviation;
         [real.times(image[0]) - imaginary.times(image[1]), real.times(image[1]) + imaginary.times(image[0])]
+    }
+
+    /// `(σ_i(x) - x) / (x (1 - x))`, expanded about a number near `x`, so that in a box powers of small numbers are taken.
+    fn quotient(&self, i: usize, x: Dual<T>) -> Dual<T> {
+        let mut shifted = [T::of(0.0); 8];
+        let coefficients = &self.quotients[i];
+        let count = coefficients.len();
+        shifted[..count].copy_from_slice(coefficients);
+        let near = T::of(x.value.near());
+        for begin in 0..count {
+            for k in (begin..count - 1).rev() {
+                shifted[k] = shifted[k] + near * shifted[k + 1];
+            }
+        }
+        let rest = x - Dual::constant(near);
+        shifted[..count].iter().rev().fold(Dual::constant(T::of(0.0)), |sum, &c| sum * rest + Dual::constant(c))
     }
 }

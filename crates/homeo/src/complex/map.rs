@@ -29,7 +29,7 @@ pub struct ComplexParams {
 
 impl Default for ComplexParams {
     fn default() -> Self {
-        let limits = JacobianLimits { boxes_per_chart: 20_000, ..JacobianLimits::default() };
+        let limits = JacobianLimits { boxes_per_chart: 200_000, ..JacobianLimits::default() };
         Self { degree: 4, grid: 24, rounds: 4, limits }
     }
 }
