@@ -21,8 +21,8 @@ const DEGREES: [usize; 3] = [2, 4, 6];
 /// The corner of the arrow in the picture.
 const SHOWN: f64 = 0.4;
 /// Lines of the grid, and points on each.
-const LINES: usize = 20;
-const POINTS: usize = 200;
+const LINES: usize = 16;
+const POINTS: usize = 64;
 
 fn arrow(corner: f64) -> Result<DomainPair, Box<dyn Error>> {
     let square = vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]];
@@ -67,7 +67,7 @@ fn grid(map: &dyn Fn(Point2) -> Result<Point2, Box<dyn Error>>, shift: f64) -> R
             let along = k as f64 / POINTS as f64;
             let [x, y] = map(if line % 2 == 0 { [place, along] } else { [along, place] })?;
             let letter = if k == 0 { 'M' } else { 'L' };
-            write!(paths, "{letter}{:.2} {:.2}", shift + 280.0 * x, 300.0 - 280.0 * y)?;
+            write!(paths, "{letter}{:.1} {:.1}", shift + 280.0 * x, 300.0 - 280.0 * y)?;
         }
         writeln!(paths, "\"/>")?;
     }

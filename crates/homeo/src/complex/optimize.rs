@@ -14,12 +14,14 @@ use super::speed::{EdgeSpeeds, power_form};
 use homeo_core::planar::{PlanarDomain, Point2};
 
 /// Sharpness of the smooth minimum by stages, in units of one over the ratio of areas, and steps for each.
-const STAGES: [f64; 5] = [10.0, 30.0, 100.0, 300.0, 1000.0];
-const STEPS: usize = 60;
+const STAGES: [f64; 6] = [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0];
+const STEPS: usize = 150;
 /// No increment is less than this part of that of linear speeds, lest rounding make two control values one.
 const LEAST_INCREMENT: f64 = 1e-4;
 /// A corner is sampled here, in its own coordinates.
 const CORNER: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 0.5], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
+/// An edge is sampled at multiples of one over this.
+const EDGE: usize = 16;
 
 type Pair = [[f64; 2]; 2];
 
@@ -47,7 +49,7 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl<'a> Search<'a> {
-    /// From linear speeds, with samples in corners and on a grid of so many points along the longer side.
+    /// From linear speeds, with samples in corners, on edges and on a grid of so many points along the longer side.
     pub fn new(outline: &'a Outline, domains: [&PlanarDomain; 2], degree: usize, grid: usize) -> Self {
         let [source, target] = domains.map(area);
         let increments = vec![vec![1.0 / degree as f64; degree]; outline.count()];
@@ -59,6 +61,11 @@ impl<'a> Search<'a> {
                 let point = piece.place(outline, at);
                 let guide = Guide::at(outline, point, piece.vertex(), piece.direction(at[1]));
                 this.add(&mut frame, &piece.rounded(), at, &guide);
+            }
+        }
+        for [p, q] in domains[0].edges() {
+            for share in (1..EDGE).map(|k| k as f64 / EDGE as f64) {
+                this.add_point(&mut frame, [0, 1].map(|k| p[k] + share * (q[k] - p[k])));
             }
         }
         let [low, high] = domains[0].bounds();

@@ -65,7 +65,7 @@ fn pair(source: Vec<Vec<Point2>>, target: Vec<Vec<Point2>>) -> DomainPair {
 /// Pairs of many classes: convex, not convex, straight corners, a needle, a hole.
 fn pairs() -> Vec<(&'static str, DomainPair)> {
     let hole = |turn: f64| polygon(5, |_| 0.35, turn).into_iter().rev().collect::<Vec<_>>();
-    let star = |k: usize| if k % 2 == 0 { 1.0 } else { 0.45 };
+    let star = |k: usize| if k.is_multiple_of(2) { 1.0 } else { 0.45 };
     let straight = vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.2], [0.0, 1.0]];
     vec![
         ("dart", pair(vec![square()], vec![dart(0.45)])),
