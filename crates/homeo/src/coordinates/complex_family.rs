@@ -5,7 +5,9 @@
 //! the dot product of `ρ_i` and `ρ_{i+1}`, the source has for an exponent `p`
 //! `γ_i = e_i / c_i (r_{i+1}^p / ρ_{i+1} - r_i^p / ρ_i)`. Multiplied out,
 //!
-//!     γ_i = (r_{i+1}^{p-2} ρ_{i+1} . e_i - r_i^{p-2} ρ_i . e_i) / c_i + i (r_{i+1}^{p-2} - r_i^{p-2}),
+//! ```text
+//! γ_i = (r_{i+1}^{p-2} ρ_{i+1} . e_i - r_i^{p-2} ρ_i . e_i) / c_i + i (r_{i+1}^{p-2} - r_i^{p-2}),
+//! ```
 //!
 //! where the first term is `t_i (1 / r_i + 1 / r_{i+1})` for `p = 1`, `t_i` the tangent of half the angle: no division by
 //! zero off the edge. Imaginary parts telescope, so the sum is real. All are multiplied by a number that vanishes on the

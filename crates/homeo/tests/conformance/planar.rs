@@ -7,7 +7,7 @@ use homeo::certificate::{PlanarMap, Provenance, StoredMap, read_map, write_compo
 use homeo::complex::{ComplexMap, ComplexParams};
 use homeo::composite::{CompositeMap, PartitionParams};
 use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
-use homeo::map::{HarmonicMap, PlanarBijection, PlanarEvaluationError};
+use homeo::map::{Enclosed2, HarmonicMap, PlanarBijection, PlanarEvaluationError};
 use homeo::progress::Silent;
 use homeo::shape::{LinearPath, TurningPath};
 use homeo_core::number::Rational;
@@ -284,6 +284,36 @@ fn complex_maps_obey_the_same_laws() {
         assert!(info.least_determinant > 0.0);
         check_any(&map, &pair);
     }
+}
+
+/// A map whose inverse is off by little.
+struct Shifted(ComplexMap);
+
+impl PlanarBijection for Shifted {
+    fn source(&self) -> &PlanarDomain {
+        self.0.source()
+    }
+
+    fn target(&self) -> &PlanarDomain {
+        self.0.target()
+    }
+
+    fn forward(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        self.0.forward(point)
+    }
+
+    fn inverse(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        let Enclosed2 { point: [x, y], radius } = self.0.inverse(point)?;
+        Ok(Enclosed2 { point: [x + 1e-5, y], radius })
+    }
+}
+
+#[test]
+#[should_panic(expected = "->")]
+fn an_inverse_that_is_off_breaks_the_laws() {
+    let pair = pair(square(), vec![vec![[0.0, 0.0], [1.0, 0.0], [0.8, 0.9], [0.0, 1.0]]]);
+    let (map, _) = ComplexMap::build(&pair, &ComplexParams::default(), &Silent).expect("a map");
+    check_any(&Shifted(map), &pair);
 }
 
 /// Several holes are no obstacle to these.
