@@ -139,7 +139,8 @@ impl ComplexMap {
         progress.stage("speeds");
         let mut search = Search::new(&outline, [&pair.source, &pair.target], params.degree, params.grid.max(1));
         let linear = search.least();
-        for round in 0.. {
+        let mut rounds = 0;
+        loop {
             search.ascend(&is_cancelled);
             let speeds = search.speeds()?;
             progress.stage("proof");
@@ -151,18 +152,18 @@ impl ComplexMap {
             let (point, error) = match verdict {
                 JacobianVerdict::Positive { least, boxes } => {
                     let sampled = [search.least(), linear].map(|share| share * search.ratio());
-                    let info = ComplexInfo { least_determinant: least, sampled, boxes, rounds: round };
+                    let info = ComplexInfo { least_determinant: least, sampled, boxes, rounds };
                     return Ok((Self::proved(pair, outline.clone(), speeds), info));
                 }
                 JacobianVerdict::Negative { point, at_most, .. } => (point, ComplexError::Folds { point, at_most }),
                 JacobianVerdict::Undecided { point, .. } => (point, ComplexError::Undecided { point }),
             };
-            if round >= params.rounds {
+            if rounds >= params.rounds {
                 return Err(error);
             }
             search.insist(point);
+            rounds += 1;
         }
-        Err(ComplexError::Stopped)
     }
 
     /// The map of given speeds, proved.

@@ -1,5 +1,6 @@
 //! Pieces cover the domain, and enclosures in them hold samples.
 
+use homeo_core::planar::Point2;
 use homeo_core::predicate::{Sign, orient2d};
 
 use super::{Random, pairs};
