@@ -9,7 +9,7 @@ use super::number::{Ball, Number};
 use super::vector::cross;
 
 /// A box of the plane.
-pub(super) type BallPoint = [Ball; 2];
+pub(crate) type BallPoint = [Ball; 2];
 
 /// So many parts of a chart are enclosed each by itself where a box is as large as its distance from the vertex.
 const DIRECTIONS: u32 = 32;

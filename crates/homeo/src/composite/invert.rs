@@ -59,7 +59,7 @@ pub(super) fn invert(
 
 /// How many edges of a domain a box may meet, if it is so few that its part of the domain is connected by paths of twice
 /// its diameter: none or one, when the part is convex, or two at a vertex in the box, which is seen from everywhere in it.
-fn meeting_edges(domain: &PlanarDomain, at: BallPoint) -> Option<usize> {
+pub(crate) fn meeting_edges(domain: &PlanarDomain, at: [Ball; 2]) -> Option<usize> {
     let [low, high]: [Point2; 2] = [at.map(Ball::low), at.map(Ball::high)];
     let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
     let meets = |[p, q]: &[Point2; 2]| {

@@ -17,9 +17,9 @@ mod chart;
 mod evaluate;
 mod frame;
 mod guide;
-mod invert;
+pub(crate) mod invert;
 mod map;
-mod number;
+pub(crate) mod number;
 mod partition;
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Sub};
 use homeo_core::number::{Interval, Rational};
 
 /// What the formulas of a chart need: the four operations, and lengths.
-pub(super) trait Number:
+pub(crate) trait Number:
     Copy + Send + Sync + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// A stored number, exactly.
@@ -36,7 +36,7 @@ pub(super) trait Number:
 
 /// What of a vertex is seen from a point.
 #[derive(Clone, Copy)]
-pub(super) struct Sight<T> {
+pub(crate) struct Sight<T> {
     /// Unit vector towards it.
     pub unit: [T; 2],
     /// One over its distance.
@@ -51,13 +51,13 @@ pub(super) struct Sight<T> {
 
 /// Sine and cosine of the angle from one unit vector to another.
 #[inline(always)]
-pub(super) fn sine_cosine<T: Number>(from: [T; 2], to: [T; 2]) -> [T; 2] {
+pub(crate) fn sine_cosine<T: Number>(from: [T; 2], to: [T; 2]) -> [T; 2] {
     [from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]]
 }
 
 /// `tan(α / 2)` of the angle from one unit vector to another, by that of two equal formulas whose divisor is not small.
 #[inline(always)]
-pub(super) fn half_tangent<T: Number>(from: [T; 2], to: [T; 2]) -> T {
+pub(crate) fn half_tangent<T: Number>(from: [T; 2], to: [T; 2]) -> T {
     let [sine, cosine] = sine_cosine(from, to);
     let one = T::of(1.0);
     if cosine.near() < 0.0 { (one - cosine) / sine } else { sine / (one + cosine) }
@@ -110,7 +110,7 @@ impl Number for f64 {
 /// `(1 - EPSILON / 2)^8` of its exact value. [`Ball::new`] makes up for both. Middle and radius take fewer operations than
 /// lower and upper end do, and no branches.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ball {
+pub(crate) struct Ball {
     pub middle: f64,
     pub radius: f64,
 }

@@ -8,6 +8,7 @@
 //! | [`HarmonicCoordinates`] (approximate: see its page) | the closed domain | yes |
 //! | [`TransfiniteMeanValue`] (data along a closed curve; its own interface) | inside | no |
 //! | [`Cauchy`], [`Green`] (complex, with normals; their own interface) | inside | yes |
+//! | [`ComplexCoordinates`] (complex shares of edges; their own interface) | as their [`ComplexFamily`] | mean value, Cauchy |
 //! | [`WachspressPolyhedron`] | convex polyhedra | no |
 //! | [`MeanValuePolyhedron`] | space, closed meshes of any genus | yes |
 //! | [`MaximumEntropyPolyhedron`] | the inside of closed meshes of any genus | yes |
@@ -30,6 +31,7 @@
 
 mod accurate;
 mod complex;
+mod complex_family;
 mod face_mesh;
 mod face_view;
 mod gauss_kronrod;
@@ -54,6 +56,7 @@ mod weighted;
 mod tests;
 
 pub use complex::{Cauchy, Complex, Green};
+pub use complex_family::{ComplexCoordinates, ComplexFamily};
 pub use harmonic::HarmonicCoordinates;
 pub use maximum_entropy::MaximumEntropy;
 pub use maximum_entropy_polyhedron::MaximumEntropyPolyhedron;

@@ -26,7 +26,8 @@ pub enum PlanarEvaluationError {
     NotProved(usize),
 }
 
-/// A homeomorphism between planar domains whose vertices correspond, linear on every edge.
+/// A homeomorphism between planar domains whose vertices correspond; every edge goes onto its edge, linearly but for
+/// [complex maps](crate::complex), which have speeds.
 pub trait PlanarBijection: Send + Sync {
     /// What is mapped.
     fn source(&self) -> &PlanarDomain;

@@ -4,9 +4,10 @@ use std::f64::consts::TAU;
 use std::io::Cursor;
 
 use homeo::certificate::{PlanarMap, Provenance, StoredMap, read_map, write_composite, write_harmonic};
+use homeo::complex::{ComplexMap, ComplexParams};
 use homeo::composite::{CompositeMap, PartitionParams};
 use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
-use homeo::map::{HarmonicMap, PlanarBijection, PlanarEvaluationError};
+use homeo::map::{Enclosed2, HarmonicMap, PlanarBijection, PlanarEvaluationError};
 use homeo::progress::Silent;
 use homeo::shape::{LinearPath, TurningPath};
 use homeo_core::number::Rational;
@@ -271,6 +272,48 @@ fn composite_mean_value_maps_obey_the_same_laws() {
         check_any(&map, &pair);
         check_composite_file(&map, &pair);
     }
+}
+
+#[test]
+fn complex_maps_obey_the_same_laws() {
+    let arrow = vec![vec![[0.0, 0.0], [1.0, 0.0], [0.45, 0.4], [0.0, 1.0]]];
+    let rounder = vec![round(10, |angle| 0.9 + 0.1 * (5.0 * angle).cos(), 0.1)];
+    let turned = pair(ring(0.0, [0.0, 0.0]), ring(0.3, [0.05, 0.0]));
+    for pair in [pair(square(), arrow), pair(vec![round(10, |_| 1.0, 0.0)], rounder), turned] {
+        let (map, info) = ComplexMap::build(&pair, &ComplexParams::default(), &Silent).expect("a map");
+        assert!(info.least_determinant > 0.0);
+        check_any(&map, &pair);
+    }
+}
+
+/// A map whose inverse is off by little.
+struct Shifted(ComplexMap);
+
+impl PlanarBijection for Shifted {
+    fn source(&self) -> &PlanarDomain {
+        self.0.source()
+    }
+
+    fn target(&self) -> &PlanarDomain {
+        self.0.target()
+    }
+
+    fn forward(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        self.0.forward(point)
+    }
+
+    fn inverse(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        let Enclosed2 { point: [x, y], radius } = self.0.inverse(point)?;
+        Ok(Enclosed2 { point: [x + 1e-5, y], radius })
+    }
+}
+
+#[test]
+#[should_panic(expected = "->")]
+fn an_inverse_that_is_off_breaks_the_laws() {
+    let pair = pair(square(), vec![vec![[0.0, 0.0], [1.0, 0.0], [0.8, 0.9], [0.0, 1.0]]]);
+    let (map, _) = ComplexMap::build(&pair, &ComplexParams::default(), &Silent).expect("a map");
+    check_any(&Shifted(map), &pair);
 }
 
 /// Several holes are no obstacle to these.

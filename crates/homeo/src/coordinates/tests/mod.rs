@@ -1,5 +1,6 @@
 //! One suite of laws for every kind, with controls that must fail.
 
+mod complex;
 mod controls;
 mod double;
 mod entropy;

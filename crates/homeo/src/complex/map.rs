@@ -1,0 +1,297 @@
+//! Complex maps with speeds, proved to be one-to-one.
+
+use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
+
+use super::bound::Problem;
+use super::error::{ComplexError, SpeedError};
+use super::frame::{Chart, Frame, Outline};
+use super::guide::Guide;
+use super::invert::{self, Start};
+use super::optimize::Search;
+use super::speed::EdgeSpeeds;
+use crate::composite::number::{Ball, Number};
+use crate::composite::{Jacobian, JacobianLimits, JacobianVerdict};
+use crate::map::{Enclosed2, PlanarBijection, PlanarEvaluationError};
+use crate::progress::Progress;
+
+/// How a complex map is sought.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ComplexParams {
+    /// Degree of the speeds, from 2 to 8; 1 has nothing to choose.
+    pub degree: usize,
+    /// Samples along the longer side of the domain, for the search.
+    pub grid: usize,
+    /// So often a point where the proof failed is added to the samples, and the search goes on.
+    pub rounds: usize,
+    /// Limits of the proof; a chart is a triangle at a vertex or a square.
+    pub limits: JacobianLimits,
+}
+
+impl Default for ComplexParams {
+    fn default() -> Self {
+        let limits = JacobianLimits { boxes_per_chart: 200_000, ..JacobianLimits::default() };
+        Self { degree: 4, grid: 24, rounds: 4, limits }
+    }
+}
+
+/// How a complex map came about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComplexInfo {
+    /// The determinant is proved to be no less than this.
+    pub least_determinant: f64,
+    /// The least determinant at samples, and of linear speeds at the same.
+    pub sampled: [f64; 2],
+    /// Boxes that the proof evaluated.
+    pub boxes: u64,
+    /// How many times points were added to the samples.
+    pub rounds: usize,
+}
+
+/// A homeomorphism between planar domains: `h(z) = sum γ_i(z) s_i(z) / sum γ_i(z)`, where
+/// `s_i(z) = h_i + (h_{i+1} - h_i) (σ_i(Re τ_i) + i Im τ_i)`, `τ_i = (z - z_i) / e_i`, and `γ_i` is the complex weight of edge
+/// `i` of mean value coordinates ([`ComplexCoordinates`](crate::coordinates::ComplexCoordinates) with `p = 1`).
+///
+/// # Guarantee
+/// The vertices and control values stored define the map. It is proved to be a homeomorphism of the closed domains that
+/// sends edges onto edges by their speeds `σ_i`, smooth inside. Linear speeds give the mean value map.
+///
+/// ```
+/// use homeo::complex::{ComplexMap, ComplexParams};
+/// use homeo::progress::Silent;
+/// use homeo_core::planar::DomainPair;
+/// let square = vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]];
+/// let other = vec![vec![[0.0, 0.0], [1.0, 0.0], [0.8, 0.9], [0.1, 1.0]]];
+/// let pair = DomainPair::new(square, other)?;
+/// let (map, info) = ComplexMap::build(&pair, &ComplexParams::default(), &Silent)?;
+/// assert!(info.least_determinant > 0.0);
+/// let image = map.forward([0.7, 0.6])?;
+/// let back = map.inverse(image.point)?;
+/// assert!((back.point[0] - 0.7).abs() < 1e-12 && back.radius < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ComplexMap {
+    source: PlanarDomain,
+    target: PlanarDomain,
+    outline: Outline,
+    speeds: EdgeSpeeds,
+    starts: Vec<Start>,
+}
+
+/// Bounds the Jacobian determinant of the complex map of given speeds from below.
+///
+/// # Guarantee
+/// [`JacobianVerdict::Positive`] is proved in the open domain, and in the limit towards vertices and edges: the map is a
+/// homeomorphism. [`JacobianVerdict::Negative`] is proved at its point, of the closed domain and no vertex; there are points
+/// of the open domain next to it where it is negative, too. Nothing depends on the number of threads.
+///
+/// # Errors
+/// There are not as many speeds as edges.
+///
+/// # Complexity
+/// Boxes times vertices.
+///
+/// ```
+/// use homeo::complex::{EdgeSpeeds, bound_complex_jacobian};
+/// use homeo::composite::{JacobianLimits, JacobianVerdict};
+/// use homeo_core::planar::DomainPair;
+/// let square = vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]];
+/// let arrow = vec![vec![[0.0, 0.0], [1.0, 0.0], [0.1, 0.1], [0.0, 1.0]]];
+/// let pair = DomainPair::new(square, arrow).unwrap();
+/// let verdict = bound_complex_jacobian(&pair, &EdgeSpeeds::linear(4), &JacobianLimits::default()).unwrap();
+/// assert!(matches!(verdict, JacobianVerdict::Negative { .. }));
+/// ```
+pub fn bound_complex_jacobian(
+    pair: &DomainPair,
+    speeds: &EdgeSpeeds,
+    limits: &JacobianLimits,
+) -> Result<JacobianVerdict, SpeedError> {
+    let outline = fitting(pair, speeds)?;
+    Ok(Problem { outline: &outline, domain: &pair.source, speeds }.bound(limits, &|| false))
+}
+
+fn fitting(pair: &DomainPair, speeds: &EdgeSpeeds) -> Result<Outline, SpeedError> {
+    let (edges, found) = (pair.source.vertex_count(), speeds.control_values().len());
+    if edges != found {
+        return Err(SpeedError::Edges { edges, found });
+    }
+    Ok(Outline::new(&pair.source, &pair.target))
+}
+
+impl ComplexMap {
+    /// Seeks speeds that make the least determinant as large as it can, and proves that it is positive.
+    ///
+    /// # Errors
+    /// The map of the best speeds found folds, or is undecided, and where; the degree is none.
+    ///
+    /// # References
+    /// Schneider 2017, (7.3), with a proof after each search.
+    pub fn build(
+        pair: &DomainPair,
+        params: &ComplexParams,
+        progress: &(dyn Progress + Sync),
+    ) -> Result<(Self, ComplexInfo), ComplexError> {
+        let outline = Outline::new(&pair.source, &pair.target);
+        if !(1..=8).contains(&params.degree) {
+            return Err(SpeedError::Degree { degree: params.degree }.into());
+        }
+        let is_cancelled = || progress.is_cancelled();
+        progress.stage("speeds");
+        let mut search = Search::new(&outline, [&pair.source, &pair.target], params.degree, params.grid.max(1));
+        let linear = search.least();
+        let mut rounds = 0;
+        loop {
+            search.ascend(&is_cancelled);
+            let speeds = search.speeds()?;
+            progress.stage("proof");
+            let problem = Problem { outline: &outline, domain: &pair.source, speeds: &speeds };
+            let verdict = problem.bound(&params.limits, &is_cancelled);
+            if is_cancelled() {
+                return Err(ComplexError::Stopped);
+            }
+            let (point, error) = match verdict {
+                JacobianVerdict::Positive { least, boxes } => {
+                    let sampled = [search.least(), linear].map(|share| share * search.ratio());
+                    let info = ComplexInfo { least_determinant: least, sampled, boxes, rounds };
+                    return Ok((Self::proved(pair, outline.clone(), speeds), info));
+                }
+                JacobianVerdict::Negative { point, at_most, .. } => (point, ComplexError::Folds { point, at_most }),
+                JacobianVerdict::Undecided { point, .. } => (point, ComplexError::Undecided { point }),
+            };
+            if rounds >= params.rounds {
+                return Err(error);
+            }
+            search.insist(point);
+            rounds += 1;
+        }
+    }
+
+    /// The map of given speeds, proved.
+    ///
+    /// # Errors
+    /// The speeds do not fit; the map folds, or is undecided, and where.
+    pub fn with_speeds(pair: &DomainPair, speeds: EdgeSpeeds, limits: &JacobianLimits) -> Result<Self, ComplexError> {
+        match bound_complex_jacobian(pair, &speeds, limits)? {
+            JacobianVerdict::Positive { .. } => Ok(Self::proved(pair, fitting(pair, &speeds)?, speeds)),
+            JacobianVerdict::Negative { point, at_most, .. } => Err(ComplexError::Folds { point, at_most }),
+            JacobianVerdict::Undecided { point, .. } => Err(ComplexError::Undecided { point }),
+        }
+    }
+
+    fn proved(pair: &DomainPair, outline: Outline, speeds: EdgeSpeeds) -> Self {
+        let (source, target) = (pair.source.clone(), pair.target.clone());
+        let mut this = Self { source, target, outline, speeds, starts: Vec::new() };
+        this.starts = invert::starts(&this);
+        this
+    }
+
+    /// The speeds.
+    pub fn speeds(&self) -> &EdgeSpeeds {
+        &self.speeds
+    }
+
+    pub(super) fn outline(&self) -> &Outline {
+        &self.outline
+    }
+
+    pub(super) fn start_points(&self) -> &[Start] {
+        &self.starts
+    }
+
+    /// Image of a point of the source, with a bound of the error. Vertices go to vertices exactly.
+    ///
+    /// # Errors
+    /// The point is not in the source, exactly, or not a number; or it is within rounding of a vertex.
+    ///
+    /// # Complexity
+    /// Linear in #V.
+    pub fn forward(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        if !point.iter().all(|x| x.is_finite()) {
+            return Err(PlanarEvaluationError::NotFinite);
+        }
+        if !self.source.contains(point) {
+            return Err(PlanarEvaluationError::Outside("source"));
+        }
+        if let Some(image) = invert::along_edge(self, point) {
+            return Ok(image);
+        }
+        let image = self.enclose(point);
+        let radius = image[0].radius.max(image[1].radius);
+        if !radius.is_finite() {
+            return Err(PlanarEvaluationError::NotProved(0));
+        }
+        Ok(Enclosed2 { point: image.map(|c| c.middle), radius })
+    }
+
+    /// The point of the source whose image is given, with a bound of the error.
+    ///
+    /// # Errors
+    /// The point is not in the target, exactly, or not a number; or the preimage is not proved to be near.
+    ///
+    /// # Complexity
+    /// Some ten to a hundred times [`forward`](Self::forward).
+    pub fn inverse(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        if !point.iter().all(|x| x.is_finite()) {
+            return Err(PlanarEvaluationError::NotFinite);
+        }
+        if !self.target.contains(point) {
+            return Err(PlanarEvaluationError::Outside("target"));
+        }
+        if let Some(preimage) = invert::back_along_edge(self, point) {
+            return Ok(preimage);
+        }
+        invert::invert(self, point).ok_or(PlanarEvaluationError::NotProved(0))
+    }
+
+    /// The derivative at a point, rounded; rows are the gradients of the two coordinates of the image. `None` outside and
+    /// at vertices.
+    pub fn jacobian(&self, point: Point2) -> Option<Jacobian> {
+        if !self.source.contains(point) {
+            return None;
+        }
+        let (_, [x, y]) = self.near(point);
+        let rows = [0, 1].map(|k| [x[k], y[k]]);
+        rows.iter().flatten().all(|d| d.is_finite()).then_some(rows)
+    }
+
+    /// Image and derivatives along the axes, rounded; also a little outside.
+    pub(super) fn near(&self, point: Point2) -> (Point2, [Point2; 2]) {
+        let guide = Guide::at(&self.outline, point, None, [0.0; 2]);
+        let local = Frame::<f64>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, point, &guide);
+        (local.value, local.along)
+    }
+
+    /// The image of a point.
+    pub(super) fn enclose(&self, point: Point2) -> [Ball; 2] {
+        let guide = Guide::at(&self.outline, point, None, [0.0; 2]);
+        Frame::<Ball>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, point.map(Ball::of), &guide).value
+    }
+
+    /// At least the norm of the inverse of the derivative in a box round a point; not a number if unknown.
+    pub(super) fn inverse_rate(&self, point: Point2, radius: f64) -> f64 {
+        let guide = Guide::at(&self.outline, point, None, [0.0; 2]);
+        let at = point.map(|c| Ball { middle: c, radius });
+        let local = Frame::<Ball>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, at, &guide);
+        let least = local.determinant().low();
+        let squares: f64 = local.along.iter().flatten().map(|d| d.size() * d.size()).sum();
+        if least > 0.0 { squares.sqrt() / least * (1.0 + 1e-12) } else { f64::NAN }
+    }
+}
+
+impl PlanarBijection for ComplexMap {
+    fn source(&self) -> &PlanarDomain {
+        &self.source
+    }
+
+    fn target(&self) -> &PlanarDomain {
+        &self.target
+    }
+
+    fn forward(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        ComplexMap::forward(self, point)
+    }
+
+    fn inverse(&self, point: Point2) -> Result<Enclosed2, PlanarEvaluationError> {
+        ComplexMap::inverse(self, point)
+    }
+}

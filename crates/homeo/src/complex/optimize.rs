@@ -1,0 +1,233 @@
+//! Speeds of the largest least determinant at samples: entropic mirror ascent.
+//!
+//! Derivatives of the map are linear in the deviations of control values from those of linear speeds, so determinants are
+//! quadratic; their parts are computed once for each sample. The least of them is made smooth,
+//! `-1/β log mean exp(-β det)`, with `β` growing by stages. Control values are sums of increments, which are positive and
+//! add up to 1 for each edge: a step multiplies each by the exponential of its slope and divides by the sum (Beck,
+//! Teboulle 2003), so monotony holds at every step without a projection. What it finds is a proposal, and proved apart.
+
+use super::SpeedError;
+use super::chart::Cover;
+use super::frame::{Chart, Frame, Outline};
+use super::guide::Guide;
+use super::speed::{EdgeSpeeds, power_form};
+use homeo_core::planar::{PlanarDomain, Point2};
+
+/// Sharpness of the smooth minimum by stages, in units of one over the ratio of areas, and steps for each.
+const STAGES: [f64; 6] = [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0];
+const STEPS: usize = 150;
+/// No increment is less than this part of that of linear speeds, lest rounding make two control values one.
+const LEAST_INCREMENT: f64 = 1e-4;
+/// A corner is sampled here, in its own coordinates.
+const CORNER: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 0.5], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
+/// An edge is sampled at multiples of one over this.
+const EDGE: usize = 16;
+
+type Pair = [[f64; 2]; 2];
+
+/// The derivatives at a sample, and how they change with each deviation.
+struct Sample {
+    along: Pair,
+    by: Vec<Pair>,
+    /// Over the turn of the chart and the ratio of areas.
+    factor: f64,
+}
+
+/// A search that can go on when points are added.
+pub(super) struct Search<'a> {
+    outline: &'a Outline,
+    degree: usize,
+    /// Derivatives by control values are for a map of areas with this ratio.
+    ratio: f64,
+    samples: Vec<Sample>,
+    /// Of each edge `d` positive numbers that add up to 1.
+    increments: Vec<Vec<f64>>,
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+impl<'a> Search<'a> {
+    /// From linear speeds, with samples in corners, on edges and on a grid of so many points along the longer side.
+    pub fn new(outline: &'a Outline, domains: [&PlanarDomain; 2], degree: usize, grid: usize) -> Self {
+        let [source, target] = domains.map(area);
+        let increments = vec![vec![1.0 / degree as f64; degree]; outline.count()];
+        let mut this = Self { outline, degree, ratio: target / source, samples: Vec::new(), increments };
+        let cover = Cover::new(outline, domains[0]);
+        let mut frame = this.frame();
+        for piece in cover.pieces.iter().filter(|piece| piece.vertex().is_some()) {
+            for at in CORNER {
+                let point = piece.place(outline, at);
+                let guide = Guide::at(outline, point, piece.vertex(), piece.direction(at[1]));
+                this.add(&mut frame, &piece.rounded(), at, &guide);
+            }
+        }
+        for [p, q] in domains[0].edges() {
+            for share in (1..EDGE).map(|k| k as f64 / EDGE as f64) {
+                this.add_point(&mut frame, [0, 1].map(|k| p[k] + share * (q[k] - p[k])));
+            }
+        }
+        let [low, high] = domains[0].bounds();
+        let step = (high[0] - low[0]).max(high[1] - low[1]) / grid as f64;
+        let count = |axis: usize| ((high[axis] - low[axis]) / step).ceil() as usize;
+        for (x, y) in (0..count(0)).flat_map(|x| (0..count(1)).map(move |y| (x, y))) {
+            let point = [low[0] + (x as f64 + 0.5) * step, low[1] + (y as f64 + 0.5) * step];
+            if domains[0].contains(point) {
+                this.add_point(&mut frame, point);
+            }
+        }
+        this
+    }
+
+    fn frame(&self) -> Frame<'a, f64> {
+        Frame::with_quotients(self.outline, vec![vec![0.0; self.degree - 1]; self.outline.count()])
+    }
+
+    /// One more sample, where the search was too kind.
+    pub fn insist(&mut self, point: Point2) {
+        let mut frame = self.frame();
+        self.add_point(&mut frame, point);
+    }
+
+    fn add_point(&mut self, frame: &mut Frame<f64>, point: Point2) {
+        let guide = Guide::at(self.outline, point, None, [0.0; 2]);
+        self.add(frame, &Chart::Plane, point, &guide);
+    }
+
+    fn add(&mut self, frame: &mut Frame<f64>, chart: &Chart<f64>, at: [f64; 2], guide: &Guide) {
+        let inner = self.degree - 1;
+        let plain = frame.evaluate(chart, at, guide);
+        let mut by = Vec::with_capacity(self.outline.count() * inner);
+        for edge in 0..self.outline.count() {
+            for k in 0..inner {
+                let mut deviations = vec![0.0; inner];
+                deviations[k] = 1.0;
+                frame.quotients_mut()[edge] = power_form(self.degree, &deviations);
+                let with = frame.evaluate(chart, at, guide).along;
+                by.push([0, 1].map(|a| [0, 1].map(|c| with[a][c] - plain.along[a][c])));
+            }
+            frame.quotients_mut()[edge].fill(0.0);
+        }
+        let factor = 1.0 / (plain.turn * self.ratio);
+        let is_good = plain.along.iter().chain(by.iter().flatten()).flatten().all(|x| x.is_finite());
+        if is_good && factor.is_finite() {
+            self.samples.push(Sample { along: plain.along, by, factor });
+        }
+    }
+
+    /// Deviations of all control values, edge by edge.
+    fn deviations(&self, increments: &[Vec<f64>]) -> Vec<f64> {
+        let mut all = Vec::with_capacity(increments.len() * (self.degree - 1));
+        for edge in increments {
+            let mut sum = 0.0;
+            for (k, increment) in edge[..self.degree - 1].iter().enumerate() {
+                sum += increment;
+                all.push(sum - (k + 1) as f64 / self.degree as f64);
+            }
+        }
+        all
+    }
+
+    /// The smooth minimum, and its slopes by deviations.
+    fn value(&self, deviations: &[f64], sharpness: f64, slopes: Option<&mut [f64]>) -> f64 {
+        let sent: Vec<(Pair, f64)> = self
+            .samples
+            .iter()
+            .map(|sample| {
+                let mut along = sample.along;
+                for (by, d) in sample.by.iter().zip(deviations) {
+                    (0..2).for_each(|a| (0..2).for_each(|c| along[a][c] += by[a][c] * d));
+                }
+                (along, cross(along[0], along[1]) * sample.factor)
+            })
+            .collect();
+        let least = sent.iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
+        let weight = |value: f64| (-sharpness * (value - least)).exp();
+        let total: f64 = sent.iter().map(|(_, value)| weight(*value)).sum();
+        if let Some(slopes) = slopes {
+            slopes.fill(0.0);
+            for (sample, (along, value)) in self.samples.iter().zip(&sent) {
+                let share = weight(*value) / total * sample.factor;
+                for (slope, by) in slopes.iter_mut().zip(&sample.by) {
+                    *slope += share * (cross(by[0], along[1]) + cross(along[0], by[1]));
+                }
+            }
+        }
+        least - (total / self.samples.len() as f64).ln() / sharpness
+    }
+
+    /// The ratio of areas, in which values are given.
+    pub fn ratio(&self) -> f64 {
+        self.ratio
+    }
+
+    /// The least determinant at samples, over the ratio of areas.
+    pub fn least(&self) -> f64 {
+        self.value(&self.deviations(&self.increments), 1e12, None)
+    }
+
+    /// Ascends, until it was done or cancelled.
+    pub fn ascend(&mut self, is_cancelled: &(dyn Fn() -> bool + Sync)) {
+        let mut slopes = vec![0.0; self.outline.count() * (self.degree - 1)];
+        for sharpness in STAGES {
+            let mut rate = 0.1;
+            for _ in 0..STEPS {
+                if is_cancelled() {
+                    return;
+                }
+                let here = self.value(&self.deviations(&self.increments), sharpness, Some(&mut slopes));
+                let better = (0..20).map(|halvings| rate * 0.5f64.powi(halvings)).find_map(|rate| {
+                    let next = self.stepped(&slopes, rate);
+                    let value = self.value(&self.deviations(&next), sharpness, None);
+                    (value > here).then_some((next, rate))
+                });
+                let Some((next, taken)) = better else { break };
+                self.increments = next;
+                rate = 2.0 * taken;
+            }
+        }
+    }
+
+    fn stepped(&self, slopes: &[f64], rate: f64) -> Vec<Vec<f64>> {
+        let inner = self.degree - 1;
+        let edge = |(i, own): (usize, &Vec<f64>)| {
+            // By an increment all control values from its own on grow, but not the last one, which is 1.
+            let mut sum = 0.0;
+            let mut exponents = vec![0.0; self.degree];
+            for k in (0..inner).rev() {
+                sum += slopes[i * inner + k];
+                exponents[k] = sum;
+            }
+            let most = exponents.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let floor = LEAST_INCREMENT / self.degree as f64;
+            let grown: Vec<f64> = own.iter().zip(&exponents).map(|(d, e)| d * (rate * (e - most)).exp()).collect();
+            let total: f64 = grown.iter().sum();
+            grown.iter().map(|d| floor + (1.0 - self.degree as f64 * floor) * d / total).collect()
+        };
+        self.increments.iter().enumerate().map(edge).collect()
+    }
+
+    /// What was found.
+    ///
+    /// # Errors
+    /// None is known; control values are checked.
+    pub fn speeds(&self) -> Result<EdgeSpeeds, SpeedError> {
+        let sums = |edge: &Vec<f64>| {
+            edge[..self.degree - 1]
+                .iter()
+                .scan(0.0, |sum, d| {
+                    *sum += d;
+                    Some(*sum)
+                })
+                .collect()
+        };
+        EdgeSpeeds::new(self.degree, self.increments.iter().map(sums).collect())
+    }
+}
+
+/// Twice the area.
+fn area(domain: &PlanarDomain) -> f64 {
+    let Some(&[x, y]) = domain.rings().first().and_then(|ring| ring.first()) else { return 0.0 };
+    domain.edges().map(|[p, q]| (p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x)).sum()
+}
