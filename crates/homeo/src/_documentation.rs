@@ -12,13 +12,10 @@ mod certificate_format {}
 #[doc = include_str!("../../../docs/methods/foliation.md")]
 mod methods_foliation {}
 
-<<<<<<< HEAD
 #[doc = include_str!("../../../docs/methods/hyperbolic.md")]
 mod methods_hyperbolic {}
-=======
 #[doc = include_str!("../../../docs/methods/complex.md")]
 mod methods_complex {}
->>>>>>> complex
 
 #[doc = include_str!("../../../docs/theory/balls.md")]
 mod theory_balls {}
