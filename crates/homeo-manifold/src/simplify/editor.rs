@@ -72,11 +72,6 @@ impl Editor {
         self.is_truncated[vertex as usize]
     }
 
-    /// Vertices that may be taken away and still are at a corner.
-    pub(super) fn has_inner_vertices(&self) -> bool {
-        (0..self.slots()).filter(|&t| self.is_alive(t)).any(|t| self.vertices(t).iter().any(|&v| !self.is_truncated(v)))
-    }
-
     /// What is across a face; there is always something.
     pub(super) fn across(&self, tetrahedron: u32, face: u8) -> Gluing {
         let gluing = self.triangulation.neighbour(tetrahedron, face);

@@ -7,7 +7,8 @@ use super::moves::{reduce_at, two_to_three};
 use crate::skeleton::EDGES;
 use crate::triangulation::Triangulation;
 
-/// Collapses edges until all vertices are truncated ones; of a closed manifold one vertex stays.
+/// Collapses edges until all vertices are truncated ones; of a closed manifold one vertex stays, or a few where the search
+/// does not find more.
 ///
 /// The manifold with truncated vertices cut off stays the same; see the theorem in the source of `collapse`. Where no
 /// edge can be collapsed, faces are opened by moves and closed otherwise, at most some hundred times.
@@ -15,14 +16,17 @@ use crate::triangulation::Triangulation;
 /// Cost: nearly linear for meshes in general; 100,000 tetrahedra take seconds.
 ///
 /// # Errors
-/// When faces are open, an edge is reversed, or no more vertex can be taken away.
+/// When faces are open, an edge is reversed, or a vertex cannot be taken away beside truncated ones.
 ///
 /// # Example
 /// ```
-/// use homeo_manifold::{Skeleton, Triangulation, simplify::{coned, without_inner_vertices}};
-/// let sphere = without_inner_vertices(&coned(&Triangulation::new(1))?)?;
-/// assert!(sphere.len() < 5);
-/// # Ok::<(), homeo_manifold::simplify::SimplifyError>(())
+/// use homeo_manifold::{Skeleton, from_signature, simplify::without_inner_vertices, subdivision::subdivided};
+/// let tripus = from_signature("cPcbbbihq")?;
+/// let fine = subdivided(&tripus);
+/// let coarse = without_inner_vertices(&fine)?;
+/// assert_eq!(Skeleton::new(&coarse).vertex_count(), 1);
+/// assert!(coarse.len() < fine.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn without_inner_vertices(triangulation: &Triangulation) -> Result<Triangulation, SimplifyError> {
     let mut editor = Editor::new(triangulation)?;
@@ -37,7 +41,10 @@ pub fn without_inner_vertices(triangulation: &Triangulation) -> Result<Triangula
         // Collapses come before the next reductions, which could undo the moves.
         shake(&mut editor, &mut random, steps);
     }
-    Err(SimplifyError::Stuck { left: inner_vertices(&editor) })
+    match inner_vertices(&editor) {
+        left if has_truncated(&editor) => Err(SimplifyError::Stuck { left }),
+        _ => Ok(editor.finished()),
+    }
 }
 
 /// How often a search that is stuck is shaken.
@@ -117,12 +124,12 @@ fn shake(editor: &mut Editor, random: &mut Random, steps: usize) {
 ///
 /// # Example
 /// ```
-/// use homeo_manifold::{Triangulation, simplify::{Simplifier, coned, without_inner_vertices}};
-/// let sphere = without_inner_vertices(&coned(&Triangulation::new(1))?)?;
-/// let mut simplifier = Simplifier::new(&sphere, 1)?;
-/// simplifier.run(100);
-/// assert!(simplifier.best().len() <= 2);
-/// # Ok::<(), homeo_manifold::simplify::SimplifyError>(())
+/// use homeo_manifold::{from_signature, signature, simplify::{Simplifier, without_inner_vertices}, subdivision::subdivided};
+/// let fine = subdivided(&from_signature("cPcbbbihq")?);
+/// let mut simplifier = Simplifier::new(&without_inner_vertices(&fine)?, 1)?;
+/// simplifier.run(1000);
+/// assert_eq!(signature(simplifier.best()), "cPcbbbihq");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Simplifier {
     best: Triangulation,
@@ -193,5 +200,66 @@ impl Random {
     /// A number below a bound, which must not be 0.
     fn below(&mut self, bound: u32) -> u32 {
         ((self.next() >> 32) * u64::from(bound) >> 32) as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::subdivision::subdivided;
+    use crate::{Homology, Links, Skeleton, from_signature, signature};
+
+    fn boundary_genera(triangulation: &Triangulation) -> Vec<Option<usize>> {
+        let links = Links::new(triangulation, &Skeleton::new(triangulation));
+        let mut genera: Vec<_> = links.all().iter().filter(|link| !link.is_sphere()).map(|link| link.genus()).collect();
+        genera.sort();
+        genera
+    }
+
+    #[test]
+    fn moves_and_collapses_keep_homology_and_links() {
+        // The tripus, another of genus 2 with torsion of its coverings, one of genus 3, one with torus and genus 2, lens spaces.
+        for name in ["cPcbbbihq", "cMcabbjik", "dLQbcccdefo", "dLQacccjjkg", "cMcabbgds", "cPcbbbiht"] {
+            let triangulation = from_signature(name).unwrap();
+            let (homology, genera) = (Homology::new(&triangulation), boundary_genera(&triangulation));
+            let mut simplifier = Simplifier::new(&subdivided(&triangulation), 7).unwrap();
+            let mut sizes = std::collections::BTreeSet::new();
+            for steps in 0..12 {
+                let shaken = simplifier.shaken(steps);
+                sizes.insert(shaken.len());
+                assert_eq!(
+                    (Homology::new(&shaken), boundary_genera(&shaken)),
+                    (homology.clone(), genera.clone()),
+                    "{name}"
+                );
+                let coarse = without_inner_vertices(&shaken).unwrap();
+                assert_eq!(
+                    (Homology::new(&coarse), boundary_genera(&coarse)),
+                    (homology.clone(), genera.clone()),
+                    "{name}"
+                );
+                assert!(coarse.len() < shaken.len(), "{} of {}", coarse.len(), shaken.len());
+            }
+            assert!(sizes.len() > 1, "nothing was shaken");
+        }
+    }
+
+    #[test]
+    fn the_search_comes_back_to_the_tripus_from_far_away() {
+        let mut simplifier = Simplifier::new(&from_signature("cPcbbbihq").unwrap(), 3).unwrap();
+        for steps in [0, 2, 5, 9] {
+            let mut search = Simplifier::new(&subdivided(&simplifier.shaken(steps)), steps as u64).unwrap();
+            search.run(20);
+            let coarse = without_inner_vertices(search.best()).unwrap();
+            let mut search = Simplifier::new(&coarse, 5).unwrap();
+            search.run(1000);
+            assert_eq!(signature(search.best()), "cPcbbbihq");
+        }
+    }
+
+    #[test]
+    fn open_faces_are_told() {
+        let open = without_inner_vertices(&Triangulation::new(1));
+        assert_eq!(open.unwrap_err(), SimplifyError::Open { tetrahedron: 0, face: 0 });
     }
 }
