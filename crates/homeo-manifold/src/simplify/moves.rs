@@ -5,11 +5,11 @@ use crate::permutation::Permutation;
 use crate::skeleton::EdgeCorner;
 use crate::triangulation::Gluing;
 
-/// Replaces the two tetrahedra at a face by three round a new edge, if they are different; whether it did.
-pub(super) fn two_to_three(editor: &mut Editor, tetrahedron: u32, face: u8) -> bool {
+/// Replaces the two tetrahedra at a face by three round a new edge, if they are different; the new ones.
+pub(super) fn two_to_three(editor: &mut Editor, tetrahedron: u32, face: u8) -> Option<Vec<u32>> {
     let gluing = editor.across(tetrahedron, face);
     if gluing.tetrahedron == tetrahedron {
-        return false;
+        return None;
     }
     // The upper tetrahedron has its corners named as they are; the lower one by those above.
     let (upper, lower, down) = (tetrahedron, gluing.tetrahedron, gluing.corners);
@@ -38,7 +38,7 @@ pub(super) fn two_to_three(editor: &mut Editor, tetrahedron: u32, face: u8) -> b
     }
     let all: Vec<_> = outside.into_iter().flatten().collect();
     places.glue(editor, &all);
-    true
+    Some(new)
 }
 
 /// Replaces three different tetrahedra round an edge by two; whether it did.

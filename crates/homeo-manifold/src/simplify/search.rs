@@ -109,10 +109,12 @@ fn reduce_all(editor: &mut Editor) {
 
 /// Some moves 2-3 at random faces.
 fn shake(editor: &mut Editor, random: &mut Random, steps: usize) {
+    let mut alive: Vec<_> = alive(editor).collect();
     for _ in 0..steps {
-        let tetrahedron = random.below(editor.slots());
-        if editor.is_alive(tetrahedron) {
-            two_to_three(editor, tetrahedron, random.below(4) as u8);
+        let tetrahedron = alive[random.below(alive.len() as u32) as usize];
+        if let Some(new) = two_to_three(editor, tetrahedron, random.below(4) as u8) {
+            // Two of them have the numbers of the old ones.
+            alive.extend(new.into_iter().filter(|tetrahedron| !alive.contains(tetrahedron)).collect::<Vec<_>>());
         }
     }
 }
