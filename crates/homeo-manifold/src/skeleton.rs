@@ -41,7 +41,7 @@ impl EdgeCorner {
     }
 
     /// The same edge of the same tetrahedron, for a walk the other way round.
-    fn turned(self) -> Self {
+    pub(crate) fn turned(self) -> Self {
         Self { corners: self.corners * Permutation::transposition(2, 3), ..self }
     }
 }

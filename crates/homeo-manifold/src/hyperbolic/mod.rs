@@ -5,6 +5,7 @@
 //! | [`Tetrahedron`], [`Volumes`] | one tetrahedron: angles, their slopes, volume |
 //! | [`solve`](solve()), [`flow`] | lengths for which angles add up to 2π round every edge, in floating point |
 //! | [`Structure`], [`prove`] | the same with a proof, in enclosures ([`Enclosure`]) |
+//! | [`find_by_retriangulating`] | the same for a manifold, by triangulations of it that have one |
 //! | [`NoMetric`], [`Obstruction`] | why there is none, with a proof where there is one |
 //! | [`Embedding`], [`minkowski`] | fundamental domain and universal cover in hyperbolic space |
 //!
@@ -20,6 +21,7 @@ pub mod minkowski;
 mod obstruction;
 mod proof;
 mod refusal;
+mod retriangulate;
 mod solve;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -31,6 +33,7 @@ pub use enclosure::{Enclosure, Real};
 pub use obstruction::Obstruction;
 pub use proof::{Structure, prove};
 pub use refusal::NoMetric;
+pub use retriangulate::{Retriangulated, find_by_retriangulating};
 pub use solve::{Approximation, Method, flow, solve};
 pub use tetrahedron::Tetrahedron;
 pub use volume::Volumes;

@@ -78,6 +78,25 @@ impl NoMetric {
     }
 }
 
+impl NoMetric {
+    /// Whether no other triangulation of the manifold can have a structure of this kind either.
+    ///
+    /// ```
+    /// use homeo_manifold::hyperbolic::NoMetric;
+    /// assert!(NoMetric::NotOrientable.is_of_the_manifold());
+    /// assert!(!NoMetric::LowDegree { edge: 3, degree: 2 }.is_of_the_manifold());
+    /// ```
+    pub fn is_of_the_manifold(&self) -> bool {
+        match self {
+            Self::Empty | Self::OpenFace { .. } | Self::ReversedEdge { .. } | Self::NotOrientable => true,
+            Self::VertexLink { link, .. } => *link != SPHERE,
+            _ => false,
+        }
+    }
+}
+
+const SPHERE: &str = "a sphere";
+
 /// What is decided without a single length.
 pub(super) fn check_topology(triangulation: &Triangulation, skeleton: &Skeleton) -> Result<(), NoMetric> {
     if triangulation.is_empty() {
@@ -107,7 +126,7 @@ pub(super) fn check_topology(triangulation: &Triangulation, skeleton: &Skeleton)
 fn refuse_link(vertex: usize, link: &Link) -> Option<NoMetric> {
     let cusp = "a cusp of a complete structure has ideal corners, which are not in this version";
     let (link, remedy) = match (link.euler_characteristic, link.is_orientable) {
-        (2.., _) => ("a sphere", "remove this vertex, an inner point of the manifold, by retriangulating"),
+        (2.., _) => (SPHERE, "remove this vertex, an inner point of the manifold, by retriangulating"),
         (1, _) => ("a projective plane", "this is no manifold"),
         (0, true) => ("a torus", cusp),
         (0, false) => ("a Klein bottle", cusp),

@@ -73,6 +73,27 @@ pub(super) fn three_to_two(editor: &mut Editor, edge: EdgeCorner) -> bool {
     true
 }
 
+/// Replaces four different tetrahedra round an edge by four round another; whether it did.
+///
+/// The four form an octahedron with the edge as diagonal; the other is the one that joins the corner 3 of `edge` with the vertex
+/// opposite. It is a move 2-3 at a face of the edge, which then has three tetrahedra, and a move 3-2.
+pub(super) fn four_to_four(editor: &mut Editor, edge: EdgeCorner) -> bool {
+    let Some(ring) = editor.ring(edge, 4) else { return false };
+    let mut numbers: Vec<_> = ring.iter().map(|corner| corner.tetrahedron).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    if ring.len() != 4 || numbers.len() != 4 {
+        return false;
+    }
+    // The face between the first two; the third keeps its place at the edge.
+    if two_to_three(editor, edge.tetrahedron, edge.corners.image(2)).is_none() {
+        return false;
+    }
+    let done = three_to_two(editor, ring[2]);
+    debug_assert!(done, "the edge has three tetrahedra now");
+    done
+}
+
 /// Flattens the two tetrahedra at an edge that has two, if this is no change of the manifold; whether it did.
 ///
 /// The segments between the edges opposite, and between the triangles that have one end of the edge, must form no cycles;

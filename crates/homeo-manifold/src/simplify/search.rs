@@ -3,7 +3,7 @@
 use super::SimplifyError;
 use super::collapse::collapse;
 use super::editor::{Editor, corner_at};
-use super::moves::{reduce_at, two_to_three};
+use super::moves::{four_to_four, reduce_at, two_to_three};
 use crate::skeleton::EDGES;
 use crate::triangulation::Triangulation;
 
@@ -119,10 +119,25 @@ fn shake(editor: &mut Editor, random: &mut Random, steps: usize) {
     }
 }
 
+/// Moves at random edges: those that reduce the number of tetrahedra, else those that keep it.
+fn wander(editor: &mut Editor, random: &mut Random, steps: usize) {
+    for _ in 0..steps {
+        let tetrahedron = random.below(editor.slots());
+        if editor.is_alive(tetrahedron) {
+            let [a, b] = EDGES[random.below(6) as usize];
+            // The octahedron round an edge has two other diagonals: one for each of these ends of the walk round it.
+            let edge = corner_at(tetrahedron, a, b);
+            if !reduce_at(editor, tetrahedron, a, b) {
+                four_to_four(editor, if random.below(2) == 0 { edge } else { edge.turned() });
+            }
+        }
+    }
+}
+
 /// Looks for a triangulation of the same manifold with few tetrahedra.
 ///
-/// Moves 3-2 and 2-0 are made while there are any; then some moves 2-3 at random, and again; the smallest is kept and gone on from,
-/// also others of the same size. The search depends on the seed alone.
+/// Moves 3-2 and 2-0 are made while there are any; then moves 4-4 at random, which keep the number, and some moves 2-3, which
+/// do not, and again; the smallest is kept and gone on from, also others of the same size. The search depends on the seed alone.
 ///
 /// # Example
 /// ```
@@ -149,14 +164,15 @@ impl Simplifier {
         Ok(Self { best: editor.finished(), random: Random(seed) })
     }
 
-    /// Goes on for a number of rounds; whether a smaller one was found.
+    /// Goes on for a number of rounds, each of a cost in proportion to the number of tetrahedra; whether a smaller one was found.
     pub fn run(&mut self, rounds: usize) -> bool {
         let before = self.best.len();
-        for _ in 0..rounds {
-            let size = self.best.len();
-            let steps = 1 + self.random.below(1 + size.min(12) as u32) as usize;
+        for round in 0..rounds {
+            // Every other round without moves that add tetrahedra.
+            let steps =
+                if round % 2 == 0 { 0 } else { 1 + self.random.below(1 + self.best.len().min(12) as u32) as usize };
             let found = self.shaken(steps);
-            if found.len() <= size {
+            if found.len() <= self.best.len() {
                 self.best = found;
             }
         }
@@ -168,21 +184,13 @@ impl Simplifier {
         &self.best
     }
 
-    /// Another triangulation of the manifold, by this many random moves 2-3 and what can be reduced then. The best one is not
-    /// changed.
+    /// Another triangulation of the manifold: this many random moves 2-3, then moves 4-4, and what can be reduced then. The best
+    /// one is not changed.
     pub fn shaken(&mut self, steps: usize) -> Triangulation {
         let Ok(mut editor) = Editor::new(&self.best) else { return self.best.clone() };
         shake(&mut editor, &mut self.random, steps);
-        // In another order than before, or it would only undo what was done.
-        let offset = self.random.below(editor.slots());
-        for step in 0..editor.slots() {
-            let tetrahedron = (step + offset) % editor.slots();
-            for [a, b] in EDGES {
-                if editor.is_alive(tetrahedron) {
-                    reduce_at(&mut editor, tetrahedron, a, b);
-                }
-            }
-        }
+        let moves = 4 * editor.slots() as usize;
+        wander(&mut editor, &mut self.random, moves);
         reduce_all(&mut editor);
         editor.finished()
     }
@@ -201,7 +209,7 @@ impl Random {
 
     /// A number below a bound, which must not be 0.
     fn below(&mut self, bound: u32) -> u32 {
-        ((self.next() >> 32) * u64::from(bound) >> 32) as u32
+        (((self.next() >> 32) * u64::from(bound)) >> 32) as u32
     }
 }
 

@@ -55,58 +55,67 @@ fn cubes_of(path: &[Place]) -> Vec<Place> {
     cubes
 }
 
-/// Three arms that rise from a common point, each with a finger round the next: the knotted Y, whose exterior in a ball is Thurston's tripus.
-///
-/// Arm `k` stands over corner `k` of a right triangle. At a low height its finger leaves it, rises, goes to the next
-/// corner, round it and back, on the left of where it came.
+/// Three arms that rise from a common point, each with a finger round the next: the knotted Y, whose exterior in a ball is
+/// Thurston's tripus.
 pub fn knotted_y() -> Vec<Vec<Place>> {
-    let (low, high, top) = (2, 6, 8);
-    let arm0 = vec![
-        [2, 2, 0],
-        [2, 2, low],
-        [2, 1, low],
-        [4, 1, low],
-        [4, 1, high],
-        [13, 1, high],
-        [13, 3, high],
-        [4, 3, high],
-        [4, 3, low],
-        [2, 3, low],
-        [2, 3, low + 1],
-        [2, 2, low + 1],
-        [2, 2, top],
-    ];
-    let arm1 = vec![
-        [12, 2, 0],
-        [12, 2, low],
-        [13, 2, low],
-        [13, 4, low],
-        [13, 4, high],
-        [13, 13, high],
-        [11, 13, high],
-        [11, 4, high],
-        [11, 4, low],
-        [11, 2, low],
-        [11, 2, low + 1],
-        [12, 2, low + 1],
-        [12, 2, top],
-    ];
-    let arm2 = vec![
+    let mut paths: Vec<_> = [0, 1].iter().map(|&corner| arm(corner, corner + 1)).collect();
+    // The third goes round a corner of the square to come to the first.
+    paths.push(vec![
         [12, 12, 0],
-        [12, 12, low],
-        [12, 13, low],
-        [10, 13, low],
-        [10, 13, high],
-        [1, 13, high],
-        [1, 1, high],
-        [3, 1, high],
-        [3, 11, high],
-        [10, 11, high],
-        [10, 11, low],
-        [12, 11, low],
-        [12, 11, low + 1],
-        [12, 12, low + 1],
-        [12, 12, top],
-    ];
-    vec![arm0, arm1, arm2, vec![[2, 2, 0], [12, 2, 0], [12, 12, 0]]]
+        [12, 12, LOW],
+        [12, 13, LOW],
+        [10, 13, LOW],
+        [10, 13, HIGH],
+        [1, 13, HIGH],
+        [1, 1, HIGH],
+        [3, 1, HIGH],
+        [3, 11, HIGH],
+        [10, 11, HIGH],
+        [10, 11, LOW],
+        [12, 11, LOW],
+        [12, 11, LOW + 1],
+        [12, 12, LOW + 1],
+        [12, 12, TOP],
+    ]);
+    paths.push(vec![[2, 2, 0], [12, 2, 0], [12, 12, 0]]);
+    paths
+}
+
+/// Four arms that rise from a common point, each with a finger round the next.
+pub fn knotted_x() -> Vec<Vec<Place>> {
+    let mut paths: Vec<_> = (0..4).map(|corner| arm(corner, (corner + 1) % 4)).collect();
+    paths.push(vec![[2, 2, 0], [12, 2, 0], [12, 12, 0], [2, 12, 0]]);
+    paths
+}
+
+/// Heights at which fingers leave their arms, and go round the next; the top of the arms.
+const LOW: i32 = 2;
+const HIGH: i32 = 6;
+const TOP: i32 = 8;
+
+/// An arm over a corner of a square, with a finger round the next corner: it leaves the arm low, rises, goes there on the right,
+/// round the corner and back on the left.
+fn arm(corner: usize, next: usize) -> Vec<Place> {
+    let corners: [[i32; 2]; 4] = [[2, 2], [12, 2], [12, 12], [2, 12]];
+    let (at, to) = (corners[corner % 4], corners[next % 4]);
+    let ahead = [0, 1].map(|axis: usize| (to[axis] - at[axis]).signum());
+    let right = [ahead[1], -ahead[0]];
+    let place = |from: [i32; 2], forward: i32, aside: i32, height: i32| {
+        [from[0] + forward * ahead[0] + aside * right[0], from[1] + forward * ahead[1] + aside * right[1], height]
+    };
+    vec![
+        place(at, 0, 0, 0),
+        place(at, 0, 0, LOW),
+        place(at, 0, 1, LOW),
+        place(at, 2, 1, LOW),
+        place(at, 2, 1, HIGH),
+        place(to, 1, 1, HIGH),
+        place(to, 1, -1, HIGH),
+        place(at, 2, -1, HIGH),
+        place(at, 2, -1, LOW),
+        place(at, 0, -1, LOW),
+        place(at, 0, -1, LOW + 1),
+        place(at, 0, 0, LOW + 1),
+        place(at, 0, 0, TOP),
+    ]
 }
