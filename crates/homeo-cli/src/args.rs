@@ -75,6 +75,8 @@ pub enum Verb {
     Blend(BlendArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
+    /// Images of points under one map and back under another onto the same shape
+    Compose(ComposeArgs),
     /// Check the certificate of a map, independently of how it was made
     Verify(VerifyArgs),
     /// Show a map or a shell: one HTML page that needs nothing else
@@ -96,6 +98,7 @@ impl Verb {
             Self::Morph(_) => "morph",
             Self::Blend(_) => "blend",
             Self::Eval(_) => "eval",
+            Self::Compose(_) => "compose",
             Self::Verify(_) => "verify",
             Self::Report(_) => "report",
         }
@@ -433,6 +436,36 @@ pub struct EvalArgs {
     #[arg(long)]
     pub exact: bool,
     /// What a point outside the domain gives
+    #[arg(long, value_enum, default_value_t = Outside::Error)]
+    pub outside: Outside,
+    /// The file to write (.npy or .csv)
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo map testdata/meshes/spot.mesh --onto cube -o spot.homeo
+  homeo map testdata/meshes/spot.mesh --onto cube --seed 2 -o again.homeo
+  homeo compose spot.homeo again.homeo --points testdata/points/spot.csv -o moved.csv
+
+The composite of a certified map and the inverse of another is one-to-one and onto. Both files are
+checked first. In floating point an answer is the image, with its error, of a point of the common
+shape that is off by the other error that is reported; --exact is without any.")]
+pub struct ComposeArgs {
+    /// The map that points take first
+    #[arg(value_name = "A")]
+    pub first: PathBuf,
+    /// The map that they take back, onto the same shape
+    #[arg(value_name = "B")]
+    pub second: PathBuf,
+    /// Points of the source of A
+    #[arg(long, value_name = "P")]
+    pub points: PathBuf,
+    /// In rationals, without any error (CSV only)
+    #[arg(long)]
+    pub exact: bool,
+    /// What a point outside the source of A gives
     #[arg(long, value_enum, default_value_t = Outside::Error)]
     pub outside: Outside,
     /// The file to write (.npy or .csv)

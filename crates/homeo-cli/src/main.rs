@@ -110,6 +110,7 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
         Verb::Morph(options) => morph::run(session, options, &mut outputs),
         Verb::Blend(options) => morph::blend(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
+        Verb::Compose(options) => eval::compose::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),
         Verb::Report(options) => report::run(session, options, &mut outputs),
     }?;

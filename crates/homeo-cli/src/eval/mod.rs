@@ -1,5 +1,6 @@
 //! `homeo eval`: images of points, both ways, in floating point or exactly.
 
+pub mod compose;
 mod images;
 
 use homeo::certificate::{FoliationMap, PlanarMap, StoredMap};
