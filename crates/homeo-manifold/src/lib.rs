@@ -20,6 +20,7 @@
 //! | [`signature`](mod@signature) | isomorphism signatures, to and from |
 //! | [`snappea`] | the gluings of the text files of SnapPea and SnapPy |
 //! | [`enumerate`](mod@enumerate) | all closed triangulations of a few tetrahedra |
+//! | [`bundle`] | circle bundles over surfaces, unit tangent bundles |
 //! | [`hyperbolic`] | hyperbolic structures with geodesic boundary, with proofs |
 //!
 //! Source: Yin 2010, section 4.2.1. The class of a vertex whose link is no sphere is *truncated*: cut off, it leaves the
