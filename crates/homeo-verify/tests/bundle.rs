@@ -381,7 +381,7 @@ fn flaw(arrays: &Arrays) -> Option<String> {
         for k in 0..3 {
             let [a, b] = ends(triangles, t, k);
             let (other, side) = sides[&[b, a]];
-            if (arrays.slopes[t][k] + arrays.slopes[other][side] + 1) % n != 0 {
+            if !(arrays.slopes[t][k] + arrays.slopes[other][side] + 1).is_multiple_of(n) {
                 return Some(format!("the wall over side {k} of triangle {t} is torn"));
             }
         }

@@ -18,6 +18,8 @@ mod section;
 #[cfg(test)]
 mod surfaces;
 mod tangent;
+#[cfg(test)]
+mod tests;
 mod walls;
 
 pub use circle::{BundleError, CircleBundle};
