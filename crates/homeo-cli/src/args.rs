@@ -73,6 +73,8 @@ pub enum Verb {
     Morph(MorphArgs),
     /// Closed curves between two others, by curvature
     Blend(BlendArgs),
+    /// Make the unit tangent bundle of a closed surface, as a closed mesh of tetrahedra
+    Bundle(BundleArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
     /// Images of points under one map and back under another onto the same shape
@@ -97,6 +99,7 @@ impl Verb {
             Self::Warp(_) => "warp",
             Self::Morph(_) => "morph",
             Self::Blend(_) => "blend",
+            Self::Bundle(_) => "bundle",
             Self::Eval(_) => "eval",
             Self::Compose(_) => "compose",
             Self::Verify(_) => "verify",
@@ -410,6 +413,39 @@ pub struct PlArgs {
     /// Also write the exact weights of all vertices
     #[arg(long, value_name = "FILE.csv")]
     pub exact: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  homeo bundle testdata/meshes/torus.obj -o torus_bundle.json
+  homeo bundle testdata/meshes/torus.obj --layers 5 -o torus_bundle.homeo
+  homeo verify torus_bundle.homeo
+
+Vertex v * layers + level of the mesh lies on that level of the circle over vertex v of the base, which is MESH with
+some edges split where it was too coarse. That the mesh is the bundle is checked before anything is written.
+The mesh has no place in space: in mesh formats its vertices lie where those of the base are.")]
+pub struct BundleArgs {
+    /// A closed, connected, oriented surface; it may cross itself
+    #[arg(value_name = "MESH")]
+    pub input: PathBuf,
+    /// Tetrahedra as .json, a certificate as .homeo, or a mesh format for volumes (.mesh, .msh, .vtk, .vtu)
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Edges of the circle over each vertex
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(3..))]
+    pub layers: u32,
+    /// Write .json as {"tetrahedra", "gluings"}, with a row for each face
+    #[arg(long)]
+    pub gluings: bool,
+    /// Merge vertices at exactly the same point into the first of them (reported)
+    #[arg(long)]
+    pub weld: bool,
+    /// Cut polygons of more than three corners into triangles
+    #[arg(long)]
+    pub triangulate: bool,
+    /// Turn triangles so that neighbours are oriented alike (reported)
+    #[arg(long)]
+    pub orient: bool,
 }
 
 #[derive(Debug, Args)]

@@ -6,6 +6,7 @@
 
 mod answer;
 mod args;
+mod bundle;
 mod display;
 mod eval;
 mod failure;
@@ -41,9 +42,9 @@ use outputs::Outputs;
 use session::Session;
 
 /// As typed; wrong usage is reported before the command line is understood.
-const VERBS: [&str; 13] = [
-    "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "blend", "eval", "verify",
-    "report",
+const VERBS: [&str; 14] = [
+    "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "blend", "bundle", "eval",
+    "verify", "report",
 ];
 
 fn main() -> ExitCode {
@@ -109,6 +110,7 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
         Verb::Warp(options) => warp::run(session, options, &mut outputs),
         Verb::Morph(options) => morph::run(session, options, &mut outputs),
         Verb::Blend(options) => morph::blend(session, options, &mut outputs),
+        Verb::Bundle(options) => bundle::run(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
         Verb::Compose(options) => eval::compose::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),

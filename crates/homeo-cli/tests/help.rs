@@ -7,8 +7,8 @@ use common::Folder;
 #[test]
 fn examples_run_as_printed() {
     for verb in [
-        "", "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "blend", "eval", "verify",
-        "report",
+        "", "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "blend", "bundle", "eval",
+        "verify", "report",
     ] {
         let folder = Folder::new().with_testdata();
         let help = folder.line(&format!("{verb} --help")).expect(0).stdout;
@@ -28,8 +28,8 @@ fn examples_run_as_printed() {
 fn verbs_are_those_that_exist() {
     let help = Folder::new().line("--help").expect(0).stdout;
     for verb in [
-        "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "blend", "eval", "verify",
-        "report",
+        "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "blend", "bundle", "eval",
+        "verify", "report",
     ] {
         assert!(help.contains(&format!("\n  {verb} ")), "{verb}");
     }

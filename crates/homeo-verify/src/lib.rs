@@ -10,7 +10,8 @@
 //! 4. `triangles`, `shell` (L1-L6, of `docs/theory/shells.md`);
 //! 5. `rings` (D), `harmonic` (H1-H5, of `docs/theory/polygons.md`);
 //! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3;
-//! 7. `hyperbolic` (Y1-Y7, of `docs/theory/hyperbolic.md`).
+//! 7. `hyperbolic` (Y1-Y7, of `docs/theory/hyperbolic.md`);
+//! 8. `bundle` (T1-T8, of `docs/theory/bundles.md`).
 //!
 //! # Complexity
 //! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file. For
@@ -19,6 +20,7 @@
 
 mod archive;
 mod ball;
+mod bundle;
 mod complex;
 mod composite;
 mod foliation;
@@ -176,6 +178,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
         Kind::CompositeMeanValue => ("composite-mean-value", "theorem on composite mean value maps, rules D and C1-C3"),
         Kind::Hyperbolic => ("hyperbolic", "theorem on glued truncated tetrahedra, rules Y1-Y7"),
+        Kind::UnitTangentBundle => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T8"),
     };
     let (target, onto) = match map.manifest.target {
         Target::Square => ("square", "square [0,1]^2"),
@@ -190,6 +193,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::Annulus => ("annulus", "target polygon with a hole"),
         Target::Domain => ("domain", "target polygon with holes"),
         Target::GeodesicBoundary => ("geodesic-boundary", "manifold"),
+        Target::UnitTangentBundle => ("unit-tangent-bundle", "surface"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
     let mut statement = format!(
@@ -241,8 +245,21 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         );
         overlaps = "By Mostow and Prasad it is the only such structure of the manifold; the checker relies on this theorem for it.";
     }
+    if let MapData::Bundle(data) = &map.data {
+        let (tetrahedra, triangles) = (data.tetrahedra.len(), data.triangles.len());
+        statement = format!(
+            "The mesh of {tetrahedra} tetrahedra is a closed oriented 3-manifold, and a bundle of circles of {} edges over the \
+             surface of {triangles} triangles in the file. Its Euler number is the Euler characteristic of the surface, so it \
+             is isomorphic to the bundle of unit tangent vectors ({theorem}).",
+            data.layers
+        );
+        overlaps = "That oriented circle bundles are classified by their Euler number is a theorem that the checker relies on.";
+    }
     let limits = [
         match &map.data {
+            MapData::Bundle(_) => {
+                "The claim is about the surface and the tetrahedra in the file, as abstract complexes."
+            }
             MapData::Hyperbolic(_) => "The claim is about the gluing in the file and the box round the stored numbers.",
             MapData::Composite(_) => "The claim is about the exact mean value maps of the polygons in the file.",
             _ => "The claim is about the complex with these cells and the exact rational map that the file defines.",
@@ -250,6 +267,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         overlaps,
         match &map.data {
             MapData::Hyperbolic(_) => "Angles and volume that a program prints are not in the file.",
+            MapData::Bundle(_) => "Homology that a program prints is not in the file.",
             _ => "Evaluation in floating point approximates this map; it is not the certified object.",
         },
     ];
@@ -277,6 +295,9 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
     if let MapData::Hyperbolic(data) = &map.data {
         return hyperbolic::check_hyperbolic(data, map.manifest.source.vertices);
     }
+    if let MapData::Bundle(data) = &map.data {
+        return bundle::check_bundle(data);
+    }
     let source = source::check_source(map)?;
     let refined = match &map.refinement {
         Some(refinement) => Some(subdivision::check_subdivision(map, refinement, &source)?),
@@ -297,7 +318,8 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
             piecewise_linear::check_onto_box(complex, |v| images[v as usize], "P")?;
             checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
         }
-        MapData::Shell(_) | MapData::Harmonic(_) | MapData::Composite(_) | MapData::Hyperbolic(_) => {} // above
+        MapData::Shell(_) | MapData::Harmonic(_) | MapData::Composite(_) => {} // above
+        MapData::Hyperbolic(_) | MapData::Bundle(_) => {}                      // above
     }
     Ok(checked)
 }

@@ -1,4 +1,4 @@
-//! Rules 8 and L1: manifolds with boundary by their vertex links, and their topological type.
+//! Rules 8, L1, T2 and T7: manifolds with boundary by their vertex links, and their topological type.
 //!
 //! *Theorem (classification of compact surfaces).* A connected surface is a sphere when it has no boundary and
 //! Euler number 2, a disk when it has a boundary and Euler number 1, an annulus when it has two boundary loops
@@ -25,7 +25,7 @@ pub(crate) fn check_manifold(complex: &Complex, what: &str, rule: &'static str) 
     let edges = check_stars(complex, edges, what, rule)?;
     check_stars(complex, vertices, what, rule)?;
     if complex.size == 4 {
-        check_vertex_links(complex, &edges, what)?;
+        check_vertex_links(complex, &edges, what, rule)?;
     }
     shape(complex, edges.chunk_by(is_same_face).count())
 }
@@ -55,7 +55,7 @@ fn check_stars(complex: &Complex, kind: &[u8], what: &str, rule: &'static str) -
 }
 
 /// Each vertex link, a connected surface by the checks before, is a sphere (inside) or a disk (on the boundary).
-fn check_vertex_links(complex: &Complex, edges: &[u128], what: &str) -> Checked {
+fn check_vertex_links(complex: &Complex, edges: &[u128], what: &str, rule: &'static str) -> Checked {
     // Euler numbers of the links: edges - facets + cells at each vertex.
     let mut euler = vec![0i64; complex.vertex_count];
     let mut add = |vertices: &[u32], sign: i64| vertices.iter().for_each(|&v| euler[v as usize] += sign);
@@ -71,7 +71,7 @@ fn check_vertex_links(complex: &Complex, edges: &[u128], what: &str) -> Checked 
         let is_right = |v: usize| euler[v] == if on_boundary[v] { 1 } else { 2 };
         if let Some(&v) = cell.iter().find(|&&v| !is_right(v as usize)) {
             let message = format!("{what}: the link of vertex {v} is neither a sphere nor a disk");
-            return Err(refuted("8", message, &[c], &[v]));
+            return Err(refuted(rule, message, &[c], &[v]));
         }
     }
     Ok(())

@@ -33,6 +33,9 @@ pub(crate) enum Target {
     /// A hyperbolic structure with geodesic boundary.
     #[serde(rename = "geodesic-boundary")]
     GeodesicBoundary,
+    /// The unit tangent bundle of a surface.
+    #[serde(rename = "unit-tangent-bundle")]
+    UnitTangentBundle,
 }
 
 impl Target {
@@ -48,7 +51,9 @@ impl Target {
 
     /// Vertices of a cell: three or four.
     pub(crate) fn cell_size(self) -> usize {
-        if matches!(self, Target::Cube | Target::Ball | Target::GeodesicBoundary) { 4 } else { 3 }
+        let is_solid =
+            matches!(self, Target::Cube | Target::Ball | Target::GeodesicBoundary | Target::UnitTangentBundle);
+        if is_solid { 4 } else { 3 }
     }
 }
 
@@ -62,6 +67,7 @@ pub(crate) enum Kind {
     CompositeHarmonic,
     CompositeMeanValue,
     Hyperbolic,
+    UnitTangentBundle,
 }
 
 /// What the manifest claims.
@@ -135,6 +141,9 @@ impl Manifest {
         let is_hyperbolic = manifest.kind == Kind::Hyperbolic;
         let is_geodesic = manifest.target == Target::GeodesicBoundary;
         readable(is_hyperbolic == is_geodesic, "kind hyperbolic and target geodesic-boundary belong together")?;
+        let is_bundle = manifest.kind == Kind::UnitTangentBundle;
+        let has_bundle = manifest.target == Target::UnitTangentBundle;
+        readable(is_bundle == has_bundle, "kind and target unit-tangent-bundle belong together")?;
         Ok(manifest)
     }
 }

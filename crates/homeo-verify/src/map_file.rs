@@ -1,6 +1,7 @@
 //! Container rules: which arrays a map file holds, with which types and shapes, and the hash of its source.
 
 use crate::archive::Archive;
+use crate::bundle::BundleData;
 use crate::manifest::{Kind, Manifest, Target};
 use crate::npy::{Array, F8, I1, I8, U4};
 use crate::number::Point;
@@ -33,6 +34,7 @@ pub(crate) enum MapData {
     Harmonic(HarmonicData),
     Composite(CompositeData),
     Hyperbolic(HyperbolicData),
+    Bundle(BundleData),
 }
 
 /// The arrays of a foliation; the section is empty for the ball.
@@ -133,6 +135,12 @@ impl MapFile {
             let data = MapData::Hyperbolic(data);
             return Ok(MapFile { manifest, positions: vec![], cells: vec![], refinement: None, data });
         }
+        if manifest.kind == Kind::UnitTangentBundle {
+            let data = BundleData::read(&mut archive, &manifest)?;
+            all_taken(&archive)?;
+            let data = MapData::Bundle(data);
+            return Ok(MapFile { manifest, positions: vec![], cells: vec![], refinement: None, data });
+        }
         let (positions, cells) = read_source(&mut archive, &manifest)?;
         let size = manifest.target.cell_size();
         let refinement = match archive.0.contains_key("cells.npy") && manifest.kind != Kind::Shell {
@@ -193,7 +201,7 @@ fn all_taken(archive: &Archive) -> Result<(), Unreadable> {
 }
 
 /// SHA-256 of the arrays of a source: its counts, then the elements as stored.
-fn source_hash(counts: [usize; 3], arrays: &[&Array]) -> String {
+pub(crate) fn source_hash(counts: [usize; 3], arrays: &[&Array]) -> String {
     let mut hasher = Sha256::new();
     counts.iter().for_each(|&count| hasher.update((count as u64).to_le_bytes()));
     arrays.iter().for_each(|array| hasher.update(array.content));

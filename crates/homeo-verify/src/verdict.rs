@@ -27,10 +27,11 @@ pub enum Verdict {
 pub struct Claim {
     /// The claim in words, with the theorem that was applied.
     pub statement: String,
-    /// `foliation`, `piecewise-linear`, `shell`, `composite-harmonic`, `composite-mean-value` or `hyperbolic`.
+    /// `foliation`, `piecewise-linear`, `shell`, `composite-harmonic`, `composite-mean-value`, `hyperbolic` or
+    /// `unit-tangent-bundle`.
     pub kind: String,
     /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon`,
-    /// `annulus`, `domain` or `geodesic-boundary`.
+    /// `annulus`, `domain`, `geodesic-boundary` or `unit-tangent-bundle`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]

@@ -14,6 +14,9 @@ mod methods_foliation {}
 
 #[doc = include_str!("../../../docs/methods/hyperbolic.md")]
 mod methods_hyperbolic {}
+#[doc = include_str!("../../../docs/methods/bundles.md")]
+mod methods_bundles {}
+
 #[doc = include_str!("../../../docs/methods/complex.md")]
 mod methods_complex {}
 

@@ -1,24 +1,17 @@
 //! Circle bundles with regular structure: a fibre of equal resolution over each vertex.
 //!
 //! # The theorem
-//! Over each vertex stands a circle of `N` edges. Over an edge from `u` to `v` stands an annulus, cut by `2 N` edges that join level
-//! `j` of `u` with the levels `j + m` and `j + m + 1` of `v`: `m`, counted modulo `N`, is the *slope*, and seen from `v` it is
-//! `-m - 1`. Over a triangle the three annuli bound a solid torus. It is filled by `3 N` tetrahedra, without further
-//! vertices, as a prism times a circle is, if and only if the three slopes round the triangle add up to `-1` or `-2` modulo `N`: then there
-//! is a sequence of all vertices over the triangle in which the three circles take turns and each four that follow each
-//! other span a tetrahedron; `-2` if they take turns in the order of the triangle, `-1` if in the opposite order.
+//! Over each vertex stands a circle of `N` edges. Over an edge from `u` to `v` stands an annulus, cut by `2 N` edges that
+//! join level `j` of `u` with the levels `j + m` and `j + m + 1` of `v`: `m`, counted modulo `N`, is the *slope*, and seen
+//! from `v` it is `-m - 1`. Over a triangle the three annuli bound a solid torus. It is filled by `3 N` tetrahedra, without
+//! further vertices, if and only if the three slopes round the triangle add up to `-1` or `-2` modulo `N`.
 //!
-//! With `h = m + 1/2` the slopes are an antisymmetric function of directed edges, and the sums round triangles are `-1/2` and
-//! `1/2`: a connection with as little curvature in each triangle as there can be. The sums, taken as these numbers
-//! and added up over a closed surface, are `N` times an integer, the *Euler number* of the bundle: all other sums cancel modulo `N`, and
-//! a section on the vertices, extended to the edges by shortest ways, has singularities whose indices add up to it. Oriented
-//! circle bundles over a closed oriented surface are classified by it (Steenrod 1951, section 35), and that of the unit
-//! tangent bundle is the Euler characteristic.
+//! With `h = m + 1/2` the slopes are an antisymmetric function of directed edges, and the sums round triangles are `-1/2`
+//! and `1/2`: a connection with as little curvature in each triangle as there can be. Added up over a closed surface, they
+//! are `N` times the *Euler number* of the bundle, which classifies it; that of the unit tangent bundle is the Euler
+//! characteristic. The tetrahedra form a simplicial complex if the triangles do and `N` is at least 3.
 //!
-//! The tetrahedra form a simplicial complex if the triangles do and `N` is at least 3: an edge over an edge of the surface, or over a vertex, is
-//! determined by its ends, as the `2 N` edges of an annulus join different pairs; a tetrahedron has two neighbouring
-//! levels of one vertex and is determined by them and by the triangle. Links of vertices are spheres: round a vertex over `v` the triangles round `v` give
-//! a disk above and a disk below a band.
+//! Proofs: `docs/theory/bundles.md`, theorems 2 to 4.
 
 use super::walls::{Side, WallError, Walls};
 use thiserror::Error;

@@ -9,17 +9,10 @@
 //! none a sink.
 //!
 //! *A component of triangles (connected across sides) has a cutting pattern if and only if the graph has a cycle, or a
-//! boundary side is free, or the prescribed ones do not all say the same.* Necessary: in a tree with `n` nodes and all half edges
-//! directed inwards the `n - 1` edges cannot lead out of all `n` nodes. Sufficient: a directed cycle, or a path from a half edge
-//! to one of the other kind, passes no node as source or sink. It grows by ears: from a node that is
-//! passed an edge leads to one that is not; a walk from there on ends at a boundary side (its direction tells that of the walk, and where
-//! the first node of it has a prescribed side, the walk ends there at once), at a node that is passed, or at a
-//! node of its own (then it is a path with a loop at its end). Every node of a walk is entered and left, and no other edges are given directions.
-//! The component is connected, so all nodes are passed in the end. Each walk costs as much as it passes: linear in all.
-//!
-//! For a disk the graph has no cycle exactly if no vertex is inside. An obstruction is minimal: where a triangle
-//! is taken away, a side is free. Yin 2010, chapter 5, reaches the same for disks by dividing them into strips; here the
-//! surface may have any topology.
+//! boundary side is free, or the prescribed ones do not all say the same.* It is found by a first path or cycle that has
+//! what is needed, and ears from then on: linear in all. For a disk the graph has no cycle exactly if no vertex is
+//! inside. Proof: `docs/theory/bundles.md`, theorem 1. Yin 2010, chapter 5, reaches the same for disks by dividing them
+//! into strips; here the surface may have any topology.
 
 use super::walls::{Side, Walls};
 use std::collections::VecDeque;

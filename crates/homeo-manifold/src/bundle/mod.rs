@@ -5,20 +5,26 @@
 //! | [`Walls`], [`cutting_pattern`] | which triangles meet, and how the prisms over them fall into tetrahedra |
 //! | [`CircleBundle`] | a bundle with regular structure, its tetrahedra and its Euler number |
 //! | [`TangentBundle`] | that of the unit tangent vectors of a closed surface |
+//! | [`Section`] | one level over each vertex; indices, and paths in the bundle |
 //!
-//! Source: Yin 2010, chapters 5 to 7.
+//! Source: Yin 2010, chapters 5 to 7. Theory: `docs/theory/bundles.md`.
 
 mod charts;
 mod circle;
 mod cutting;
+mod field;
 mod refine;
+mod section;
 #[cfg(test)]
 mod surfaces;
 mod tangent;
+#[cfg(test)]
+mod tests;
 mod walls;
 
 pub use circle::{BundleError, CircleBundle};
 pub use cutting::{Diagonal, Obstruction, cutting_pattern};
 pub use refine::Carrier;
+pub use section::{Section, SectionError};
 pub use tangent::TangentBundle;
 pub use walls::{Side, WallError, Walls};

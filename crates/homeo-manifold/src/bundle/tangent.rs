@@ -1,18 +1,15 @@
 //! Unit tangent bundles of closed surfaces.
 //!
 //! # Construction
-//! The surface is cut into two disks along a closed path if it is a sphere, and into one along paths that meet at their ends otherwise.
-//! Over the disks stand products: the levels of a disk are copies of it, and its frame is level 0. Across the cuts the levels are shifted, and
-//! the shift changes by one along each of the *twisted* edges: along the closed path of a sphere by `2 N` in all, with `N` levels; along
-//! each of `2 g - 2` of the paths otherwise by `-N`, so that it is 0 modulo `N` at their ends. Over a twisted edge the base edges of one side are the
-//! diagonals of the other, which prescribes the same diagonal to both; all other walls are cut by
-//! [`cutting_pattern`]. Paths that are too short have their edges split.
+//! The surface is cut into two disks along a closed path if it is a sphere, and into one along paths that meet at their
+//! ends otherwise. Over the disks stand products: the levels of a disk are copies of it, and its frame is level 0. Across
+//! the cuts the levels are shifted, and the shift changes by one along each of the *twisted* edges: along the closed path
+//! of a sphere by `2 N` in all, with `N` levels; along each of `2 g - 2` of the paths otherwise by `-N`, so that it is 0
+//! modulo `N` at their ends. Over a twisted edge the base edges of one side are the diagonals of the other, which
+//! prescribes the same diagonal to both; all other walls are cut by [`cutting_pattern`]. Paths that are too short have
+//! their edges split.
 //!
-//! Source: Yin 2010, chapters 6 and 7. There the spheres' path has exactly `4 N` edges for `2 N` levels, all of them twisted, and the shift has a
-//! constant `N` that turns the frame of one disk by half a turn; the paths of a surface of genus `g` are `2 g` loops with one
-//! common point, each of `N` edges. Neither is needed: the bundle is determined by its Euler number ([`CircleBundle`]), which is the
-//! number of twisted edges divided by `N`, and loops with one common point would have to share the edges that lead to it. The cuts here are a graph with up
-//! to `6 g - 3` paths, which share their ends only.
+//! Source: Yin 2010, chapters 6 and 7; `docs/theory/bundles.md` says where this differs, and proves it.
 
 use super::charts::{cuts, ends};
 use super::circle::{BundleError, CircleBundle, check_sizes};

@@ -3,10 +3,12 @@
 //! The format is documented in `docs/certificate-format-v1.md`. Nothing is checked here beyond what
 //! evaluation needs to be safe; the proof is re-established by the separate program `homeo-verify`.
 
+mod bundle;
 mod npy;
 mod read;
 mod write;
 
+pub use bundle::write_bundle;
 pub use read::{MapFileError, read_map};
 pub use write::{
     content_sha256, write_composite, write_harmonic, write_hyperbolic, write_map, write_planar, write_shell,

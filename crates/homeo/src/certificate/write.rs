@@ -194,8 +194,8 @@ pub fn content_sha256<const K: usize>(source: &SourceMesh<K>) -> String {
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-struct Archive<'w, W: Write + Seek> {
-    zip: ZipWriter<&'w mut W>,
+pub(super) struct Archive<'w, W: Write + Seek> {
+    pub(super) zip: ZipWriter<&'w mut W>,
 }
 
 /// What the manifest says of a map beside its source and provenance.
@@ -261,18 +261,18 @@ impl<'w, W: Write + Seek> Archive<'w, W> {
         self.array(name, &[points.len(), 2], points.as_flattened().iter().copied())
     }
 
-    fn finish(self) -> io::Result<()> {
+    pub(super) fn finish(self) -> io::Result<()> {
         self.zip.finish().map_err(io::Error::other)?;
         Ok(())
     }
 
-    fn add(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
+    pub(super) fn add(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
         self.zip.start_file(name, options).map_err(io::Error::other)?;
         self.zip.write_all(bytes)
     }
 
-    fn array<T: Element>(
+    pub(super) fn array<T: Element>(
         &mut self,
         name: &str,
         shape: &[usize],

@@ -1,0 +1,142 @@
+//! `homeo bundle`: the unit tangent bundle of a closed surface as a mesh, with its certificate.
+
+mod files;
+mod refuse;
+
+use std::path::{Path, PathBuf};
+
+use homeo::certificate::{Provenance, write_bundle};
+use homeo::progress::Progress;
+use homeo_core::mesh::TetrahedronComplex;
+use homeo_manifold::bundle::{BundleError, TangentBundle};
+use homeo_manifold::{Homology, Triangulation};
+use homeo_verify::Claim;
+use serde_json::{Value, json};
+
+use crate::answer::Answer;
+use crate::args::BundleArgs;
+use crate::failure::{Failure, Result};
+use crate::mesh_input::{self, Requested};
+use crate::outputs::{Outputs, check_target};
+use crate::proof;
+use crate::session::Session;
+use crate::text::{Lines, file_name, stages};
+use files::Kind;
+
+/// Makes a bundle, has it proved and stages its file.
+pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Result<Answer> {
+    let kind = options.output.as_deref().map(|path| Kind::of(path, options.gluings)).transpose()?;
+    options.output.iter().try_for_each(|path| check_target(path, &[&options.input]))?;
+    let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
+    let mesh = mesh_input::read(session, &options.input, requested)?;
+    for note in mesh.changes.iter().chain(&mesh.file.losses) {
+        session.display().note(note);
+    }
+    session.stage("check");
+    let complex = refuse::unfit(session, &mesh, options.triangulate)?;
+    session.check()?;
+    session.stage("bundle");
+    let corners: Vec<[u32; 3]> = complex.cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
+    let tangent = TangentBundle::new(&corners, complex.vertex_count(), options.layers).map_err(explain)?;
+    session.check()?;
+    session.stage("homology");
+    let made = Made::new(tangent)?;
+    session.check()?;
+    let provenance = Provenance {
+        source_name: file_name(&options.input),
+        program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
+        options: json!({
+            "layers": options.layers, "weld": options.weld, "triangulate": options.triangulate,
+            "orient": options.orient,
+        }),
+    };
+    let map_path = options.output.as_deref().filter(|_| kind == Some(Kind::Certificate));
+    let claim = proof::write_and_check(session, map_path, outputs, |mut out| {
+        write_bundle(&made.tangent.bundle, &provenance, &mut out)
+    })?;
+    if let (Some(path), Some(kind)) = (&options.output, kind) {
+        files::stage(session, path, kind, &made, &mesh.file.positions, outputs)?;
+    }
+    session.end_stage();
+    let fields = json!({
+        "target": claim.target,
+        "certificate": proof::claim_json(&claim),
+        "bundle": made.described(),
+        "output": options.output.as_ref().map(|path| path.display().to_string()),
+    });
+    Ok(Answer::new(fields, words(session, &options.input, options.output.as_ref(), &made, &claim)))
+}
+
+/// A bundle and what is told of it.
+struct Made {
+    tangent: TangentBundle,
+    tetrahedra: Vec<[u32; 4]>,
+    triangulation: Triangulation,
+    euler_number: i64,
+    homology: Homology,
+}
+
+impl Made {
+    fn new(tangent: TangentBundle) -> Result<Self> {
+        let bug = |what: &dyn std::fmt::Display| Failure::bug(format!("the bundle is no closed mesh: {what}"));
+        let tetrahedra = tangent.bundle.tetrahedra();
+        let vertices = tangent.bundle.vertex_count() * tangent.bundle.layers() as usize;
+        let complex = TetrahedronComplex::from_indices(vertices, &tetrahedra).map_err(|error| bug(&error))?;
+        let triangulation = Triangulation::from_complex(&complex).map_err(|error| bug(&error))?;
+        let euler_number = tangent.bundle.euler_number().ok_or_else(|| bug(&"its base has a boundary"))?;
+        let homology = Homology::new(&triangulation);
+        Ok(Self { tangent, tetrahedra, triangulation, euler_number, homology })
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.tangent.bundle.vertex_count() * self.tangent.bundle.layers() as usize
+    }
+
+    fn genus(&self) -> i64 {
+        1 - self.euler_number / 2
+    }
+
+    fn described(&self) -> Value {
+        json!({
+            "genus": self.genus(), "euler_number": self.euler_number, "layers": self.tangent.bundle.layers(),
+            "tetrahedra": self.tetrahedra.len(), "vertices": self.vertex_count(), "h1": self.homology.to_string(),
+            "base": {
+                "vertices": self.tangent.bundle.vertex_count(), "triangles": self.tangent.bundle.triangles().len(),
+                "added": self.tangent.added.len(),
+            },
+        })
+    }
+}
+
+/// What the topology report lets through is a surface; the sizes are left.
+fn explain(error: BundleError) -> Failure {
+    match error {
+        BundleError::TooMany { .. } => Failure::limits("too-large", error.to_string()),
+        BundleError::NotManifold { vertex } => {
+            Failure::input("unfit-input", error.to_string()).with("elements", json!([vertex]))
+        }
+        _ => Failure::input("unfit-input", error.to_string()),
+    }
+}
+
+fn words(session: &Session, input: &Path, output: Option<&PathBuf>, made: &Made, claim: &Claim) -> String {
+    let base = &made.tangent.bundle;
+    let mut lines = Lines::default();
+    lines.add("certificate", proof::holds(claim));
+    lines.add("genus", made.genus());
+    lines.add("Euler number", made.euler_number);
+    lines.add("mesh", format!("{} vertices, {} tetrahedra", made.vertex_count(), made.tetrahedra.len()));
+    let added = match made.tangent.added.len() {
+        0 => String::new(),
+        added => format!(" ({added} added)"),
+    };
+    lines.add("base", format!("{} vertices{added}, {} triangles", base.vertex_count(), base.triangles().len()));
+    lines.add("fibres", format!("{} edges each", base.layers()));
+    lines.add("homology", format!("H1 = {}", made.homology));
+    lines.add("time", stages(&session.seconds()));
+    match output {
+        Some(path) => lines.add("written", path.display()),
+        None => lines.add("written", "nothing: give -o FILE.json, FILE.homeo or a mesh format"),
+    }
+    lines.below(&format!("unit tangent bundle of {}: a circle bundle with its Euler number, proved", input.display()))
+}

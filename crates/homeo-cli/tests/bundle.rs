@@ -1,0 +1,110 @@
+//! `homeo bundle`: what it writes, what it refuses, and what the checker says of it.
+
+mod common;
+
+use common::{CLOSED, Folder, cubes, quads, torus};
+use homeo_core::mesh::TetrahedronComplex;
+use homeo_manifold::{Homology, Triangulation, read_record};
+use serde_json::Value;
+
+fn rows<const K: usize>(value: &Value) -> Vec<[u32; K]> {
+    let number = |value: &Value| value.as_u64().unwrap() as u32;
+    let row = |row: &Value| std::array::from_fn(|k| number(&row[k]));
+    value.as_array().unwrap().iter().map(row).collect()
+}
+
+#[test]
+fn bundles_are_proved_and_reported() {
+    for (mesh, genus, h1) in [(CLOSED.to_owned(), 0, "Z_2"), (torus(5, 4), 1, "3 Z")] {
+        let folder = Folder::new();
+        let name = if genus == 0 { "m.off" } else { "m.obj" };
+        folder.write(name, mesh);
+        let report = folder.line(&format!("bundle {name} --layers 5 -o b.homeo --json -q")).expect(0).json();
+        let (bundle, certificate) = (&report["bundle"], &report["certificate"]);
+        assert_eq!((&bundle["genus"], &bundle["euler_number"]), (&genus.into(), &(2 - 2 * genus).into()));
+        assert_eq!((&bundle["layers"], &bundle["h1"]), (&5.into(), &h1.into()));
+        assert_eq!((&certificate["kind"], &certificate["holds"]), (&"unit-tangent-bundle".into(), &true.into()));
+        for stage in ["read", "check", "bundle", "homology", "write", "certificate", "total"] {
+            assert!(report["seconds"][stage].is_number(), "{stage} is missing in {}", report["seconds"]);
+        }
+        let verified = folder.line("verify b.homeo --json -q").expect(0).json();
+        assert_eq!(&verified["certificate"], certificate);
+        assert_eq!(verified["input"]["triangles"], bundle["base"]["triangles"]);
+        folder.line(&format!("verify b.homeo --source {name} -q")).expect(2);
+        assert!(folder.line("verify b.homeo").expect(0).stdout.contains("unit tangent"));
+    }
+}
+
+#[test]
+fn both_forms_of_json_hold_the_same_manifold() {
+    let folder = Folder::new();
+    folder.write("m.off", CLOSED);
+    let report = folder.line("bundle m.off --layers 4 -o b.json --json -q").expect(0).json();
+    let json: Value = serde_json::from_str(&folder.text("b.json")).unwrap();
+    let (tets, base, slopes) = (rows::<4>(&json["tets"]), rows::<3>(&json["base"]), rows::<3>(&json["slopes"]));
+    assert_eq!((json["layers"].as_u64(), json["euler_number"].as_i64()), (Some(4), Some(2)));
+    assert_eq!((tets.len(), slopes.len()), (12 * base.len(), base.len()));
+    assert_eq!(json["parents"].as_array().unwrap().len(), base.len());
+    let count = json["vertices"].as_u64().unwrap() as usize;
+    assert_eq!(count, 4 * (4 + json["added"].as_array().unwrap().len()));
+    assert_eq!(report["bundle"]["vertices"], count);
+    let complex = TetrahedronComplex::from_indices(count, &tets).unwrap();
+    let homology = Homology::new(&Triangulation::from_complex(&complex).unwrap());
+    folder.line("bundle m.off --layers 4 --gluings -o g.json -q").expect(0);
+    let record = read_record(&folder.text("g.json")).unwrap().triangulation;
+    assert_eq!((record.len(), record.is_closed()), (tets.len(), true));
+    assert_eq!((homology.to_string(), Homology::new(&record)), ("Z_2".to_owned(), homology));
+}
+
+#[test]
+fn meshes_keep_base_and_level_as_attributes() {
+    let folder = Folder::new();
+    folder.write("m.obj", torus(4, 4));
+    folder.line("bundle m.obj --layers 3 -o b.vtu -q").expect(0);
+    let mesh = homeo_core::io::read_mesh(&folder.path("b.vtu")).unwrap();
+    assert_eq!((mesh.vertex_count, mesh.tetrahedra.len()), (48, 288));
+    assert_eq!(mesh.positions[3..6], [mesh.positions[3]; 3]);
+    let names: Vec<&str> = mesh.attributes.iter().map(|attribute| attribute.name.as_str()).collect();
+    assert!(names.contains(&"base") && names.contains(&"level"), "{names:?}");
+}
+
+#[test]
+fn files_do_not_depend_on_threads() {
+    let folder = Folder::new();
+    folder.write("m.obj", torus(9, 7));
+    for extension in ["json", "homeo"] {
+        let make = |threads: usize| {
+            folder.line(&format!("bundle m.obj -o b.{extension} --threads {threads} -q")).expect(0);
+            folder.read(&format!("b.{extension}"))
+        };
+        assert_eq!(make(1), make(3));
+    }
+}
+
+#[test]
+fn what_is_no_closed_oriented_surface_is_refused_with_its_elements() {
+    let closed = CLOSED.to_owned();
+    let two = closed.replace("4 4 0", "8 8 0").replacen("0 0 1\n", "0 0 1\n5 0 0\n6 0 0\n5 1 0\n5 0 1\n", 1)
+        + "3 4 6 5\n3 4 5 7\n3 5 6 7\n3 6 4 7\n";
+    let cases = [
+        ("open", closed.replace("4 4 0", "4 3 0").replace("3 2 0 3\n", ""), "not-a-closed-surface"),
+        ("turned", closed.replace("3 2 0 3", "3 0 2 3"), "inconsistent-orientation"),
+        ("two", two, "not-a-closed-surface"),
+        ("isolated", closed.replace("4 4 0", "5 4 0").replace("0 0 1\n", "0 0 1\n9 9 9\n"), "isolated-vertex"),
+    ];
+    for (name, off, code) in cases {
+        let folder = Folder::new();
+        folder.write("m.off", off);
+        let report = folder.line("bundle m.off -o b.json --json -q").expect(3).json();
+        assert_eq!(report["error"]["code"], code, "{name}: {}", report["error"]["message"]);
+        assert!(report["error"]["message"].as_str().unwrap().chars().any(|c| c.is_ascii_digit()), "{name}");
+        assert_eq!(folder.names(), ["m.off"], "{name}");
+    }
+    let folder = Folder::new();
+    folder.write("v.mesh", cubes(&[[0, 0, 0]])).write("q.obj", quads(2)).write("m.off", closed);
+    assert_eq!(folder.line("bundle v.mesh --json -q").expect(3).json()["error"]["code"], "wrong-dimension");
+    assert_eq!(folder.line("bundle q.obj --json -q").expect(3).json()["error"]["code"], "polygon-not-triangle");
+    for line in ["bundle m.off --layers 2", "bundle m.off -o b.obj", "bundle m.off --gluings -o b.vtu"] {
+        folder.line(line).expect(2);
+    }
+}
