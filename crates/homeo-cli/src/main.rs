@@ -9,6 +9,7 @@ mod args;
 mod display;
 mod eval;
 mod failure;
+mod hyperbolic;
 mod info;
 mod inside;
 mod logging;
@@ -41,8 +42,20 @@ use outputs::Outputs;
 use session::Session;
 
 /// As typed; wrong usage is reported before the command line is understood.
-const VERBS: [&str; 13] = [
-    "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "blend", "eval", "verify",
+const VERBS: [&str; 14] = [
+    "info",
+    "map",
+    "shell",
+    "simplify",
+    "remesh",
+    "transfer",
+    "pl",
+    "warp",
+    "morph",
+    "blend",
+    "hyperbolic",
+    "eval",
+    "verify",
     "report",
 ];
 
@@ -109,6 +122,7 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
         Verb::Warp(options) => warp::run(session, options, &mut outputs),
         Verb::Morph(options) => morph::run(session, options, &mut outputs),
         Verb::Blend(options) => morph::blend(session, options, &mut outputs),
+        Verb::Hyperbolic(options) => hyperbolic::run(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),
         Verb::Report(options) => report::run(session, options, &mut outputs),
