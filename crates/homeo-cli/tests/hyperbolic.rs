@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Folder, cubes};
-use homeo_manifold::{Links, Skeleton, Triangulation, from_signature, subdivision::subdivided};
+use homeo_manifold::{Links, Skeleton, Triangulation, from_signature, record::write_record, subdivision::subdivided};
 use serde_json::{Value, json};
 
 const TRIPUS: &str = "testdata/hyperbolic/tripus.json";
@@ -31,7 +31,7 @@ fn the_tripus_has_its_known_metric_and_a_certificate() {
     let angles = answer["metric"]["dihedral_angles"].as_array().unwrap();
     assert_eq!(angles.len(), 2);
     for angle in angles.iter().flat_map(|row| row.as_array().unwrap()) {
-        assert!((number(angle) - 0.523598775598).abs() < 1e-12, "{angle}");
+        assert!((number(angle) - std::f64::consts::FRAC_PI_6).abs() < 1e-12, "{angle}");
     }
     let length = &answer["metric"]["edge_lengths"][0];
     assert!(number(&length["low"]) < 0.5961338948908373 && number(&length["high"]) > 0.5961338948908373);
@@ -119,6 +119,18 @@ fn a_signature_gives_the_same_as_its_record() {
         .map(|input| folder.line(&format!("hyperbolic {input} --json")).expect(0).json()["metric"]["volume"].clone());
     assert_eq!(metrics[0], metrics[1]);
     assert_eq!(metrics[1], metrics[2]);
+}
+
+#[test]
+fn inner_vertices_of_a_record_are_taken_away_on_request() {
+    let folder = Folder::new();
+    let fine = subdivided(&from_signature("cPcbbbihq").unwrap());
+    folder.write("fine.json", write_record(&fine));
+    let run = folder.line("hyperbolic fine.json").expect(3);
+    assert!(run.stderr.contains("is a sphere") && run.stderr.contains("--retriangulate"), "{}", run.stderr);
+    let answer = folder.line("hyperbolic fine.json --retriangulate --json").expect(0).json();
+    assert!((volume(&answer) - VOLUME).abs() < 1e-9);
+    assert!(answer["tried"].as_u64().unwrap() > 0);
 }
 
 /// The inside of a mesh, by facet lists: cells that touch a cut-off vertex are left out.

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use homeo::progress::Progress;
 use homeo_manifold::hyperbolic::{NoMetric, Structure};
-use homeo_manifold::simplify::Simplifier;
+use homeo_manifold::simplify::{Simplifier, SimplifyError, without_inner_vertices};
 use homeo_manifold::{FundamentalGroup, Homology, Links, Skeleton, Triangulation, signature};
 use serde_json::json;
 
@@ -45,7 +45,7 @@ pub fn structure(session: &Session, input: &Input, retriangulate: bool, tries: u
     };
     session.check()?;
     let may_go_on = retriangulate || input.is_free || !refusal.is_proved();
-    if is_about_manifold(&refusal) {
+    if is_about_manifold(&refusal, &input.triangulation) {
         return Err(refused(input, &refusal, may_go_on, 0));
     }
     if let Some(rank) = FundamentalGroup::new(&input.triangulation).free_rank() {
@@ -74,8 +74,9 @@ fn attempt(triangulation: Triangulation, tried: usize) -> std::result::Result<Fo
 
 /// Other triangulations of the manifold, each once; how many where none has a structure.
 fn others(session: &Session, input: &Input, tries: usize) -> Result<std::result::Result<Found, usize>> {
-    let simplifier = Simplifier::new(&input.triangulation, session.common.seed);
-    let mut simplifier = simplifier.map_err(|e| Failure::input("unfit-input", e.to_string()))?;
+    let unfit = |error: SimplifyError| Failure::limits("not-simplified", format!("{}: {error}", input.name));
+    let start = without_inner_vertices(&input.triangulation).map_err(unfit)?;
+    let mut simplifier = Simplifier::new(&start, session.common.seed).map_err(unfit)?;
     let mut seen = HashSet::from([signature(&input.triangulation)]);
     let mut candidate = simplifier.best().clone();
     for number in 0..tries {
@@ -91,11 +92,14 @@ fn others(session: &Session, input: &Input, tries: usize) -> Result<std::result:
 }
 
 /// Whether a refusal is one of the manifold, whatever its triangulation.
-fn is_about_manifold(refusal: &NoMetric) -> bool {
+fn is_about_manifold(refusal: &NoMetric, triangulation: &Triangulation) -> bool {
     match refusal {
         NoMetric::Empty | NoMetric::OpenFace { .. } | NoMetric::ReversedEdge { .. } | NoMetric::NotOrientable => true,
-        // Inner points can be taken away, but not by the moves that are made here.
-        NoMetric::VertexLink { .. } => true,
+        // Inner points can be taken away; other components of the boundary stay.
+        NoMetric::VertexLink { .. } => {
+            let genera = genera(triangulation);
+            genera.is_empty() || genera.iter().any(|&genus| genus < 2)
+        }
         NoMetric::LowDegree { .. } | NoMetric::NoAngles { .. } | NoMetric::Escapes { .. } => false,
         NoMetric::Degenerate { .. } | NoMetric::NotFound { .. } | NoMetric::NotProved { .. } => false,
     }
@@ -103,11 +107,11 @@ fn is_about_manifold(refusal: &NoMetric) -> bool {
 
 /// The failure for a refusal: the input's fault where it is proved and nothing else was to be tried.
 fn refused(input: &Input, refusal: &NoMetric, went_on: bool, tried: usize) -> Failure {
-    let is_settled = is_about_manifold(refusal) || refusal.is_proved() && !went_on;
+    let is_settled = is_about_manifold(refusal, &input.triangulation) || refusal.is_proved() && !went_on;
     let (exit, code) = if is_settled { (Exit::Input, "no-metric") } else { (Exit::Limits, "no-metric-found") };
     let size = input.triangulation.len();
     let mut message = format!("{}: {refusal}", input.name);
-    if is_settled && !is_about_manifold(refusal) {
+    if is_settled && !is_about_manifold(refusal, &input.triangulation) {
         message.push_str("\n  --retriangulate looks for other triangulations of the manifold");
     } else if !is_settled {
         message.push_str(&format!(
