@@ -75,13 +75,15 @@ pub enum Verb {
     Blend(BlendArgs),
     /// Make the unit tangent bundle of a closed surface, as a closed mesh of tetrahedra
     Bundle(BundleArgs),
+    /// The hyperbolic metric with geodesic boundary of glued tetrahedra, or of a solid, with a proof
+    Hyperbolic(HyperbolicArgs),
     /// Images of points under a map, or under its inverse
     Eval(EvalArgs),
     /// Images of points under one map and back under another onto the same shape
     Compose(ComposeArgs),
     /// Check the certificate of a map, independently of how it was made
     Verify(VerifyArgs),
-    /// Show a map or a shell: one HTML page that needs nothing else
+    /// Show a map, a shell or a hyperbolic structure: one HTML page that needs nothing else
     Report(ReportArgs),
 }
 
@@ -100,6 +102,7 @@ impl Verb {
             Self::Morph(_) => "morph",
             Self::Blend(_) => "blend",
             Self::Bundle(_) => "bundle",
+            Self::Hyperbolic(_) => "hyperbolic",
             Self::Eval(_) => "eval",
             Self::Compose(_) => "compose",
             Self::Verify(_) => "verify",
@@ -536,10 +539,11 @@ pub struct VerifyArgs {
   homeo map testdata/meshes/face.obj --onto disk -o face.homeo
   homeo report face.homeo -o face.html
 
-The map is a foliation or a shell. The page shows source and image side by side with the same
-pattern on both, the distortion, and level sets and leaves, or the layers and pillars of the shell.")]
+The map is a foliation, a shell or one between polygons. The page shows source and image side by side with the
+same pattern on both, the distortion, and level sets and leaves, or the layers and pillars of the shell; of a
+hyperbolic structure it shows the fundamental domain, with lengths, angles and side pairings.")]
 pub struct ReportArgs {
-    /// The map, or a shell
+    /// The map, a shell, or a hyperbolic structure
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
     /// The page to write
@@ -669,6 +673,58 @@ pub struct BlendArgs {
     /// How many curves, the first and the last included
     #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     pub frames: u32,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  homeo hyperbolic testdata/hyperbolic/tripus.json -o tripus.homeo --report tripus.html
+  homeo hyperbolic testdata/hyperbolic/census.json --entry dLQbcccdefo --json
+  homeo hyperbolic --signature cPcbbbihq --picture tripus.glb --depth 1
+
+INPUT is a record of glued tetrahedra (JSON), a file with an isomorphism signature, or a tetrahedral mesh of
+a solid whose boundary has genus 2 or more everywhere. The vertices of a gluing are cut off and leave the boundary. The
+metric is unique; lengths, angles and volume are printed with bounds. A triangulation that is proved to have none
+gives exit code 3, one of which nothing is known exit code 4.")]
+pub struct HyperbolicArgs {
+    /// Glued tetrahedra (.json), an isomorphism signature in a file, or a tetrahedral mesh
+    #[arg(value_name = "INPUT", required_unless_present = "signature", conflicts_with = "signature")]
+    pub input: Option<PathBuf>,
+    /// The isomorphism signature of a triangulation, in place of a file
+    #[arg(long, value_name = "ISOSIG")]
+    pub signature: Option<String>,
+    /// Which record of a file with several, by the isoSig that it states
+    #[arg(long, value_name = "ISOSIG", conflicts_with = "signature")]
+    pub entry: Option<String>,
+    /// The certificate to write
+    #[arg(short, long, value_name = "OUT.homeo")]
+    pub output: Option<PathBuf>,
+    /// Write one self-contained HTML page with the fundamental domain
+    #[arg(long, value_name = "PAGE.html")]
+    pub report: Option<PathBuf>,
+    /// Write the faces of the fundamental domain for other viewers (.glb or .gltf)
+    #[arg(long, value_name = "OUT.glb")]
+    pub picture: Option<PathBuf>,
+    /// In which model of hyperbolic space the picture is
+    #[arg(long, value_enum, value_name = "MODEL", default_value_t = ModelName::Ball)]
+    pub model: ModelName,
+    /// Show the universal cover up to so many faces away from the fundamental domain in the picture
+    #[arg(long, value_name = "D", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=4))]
+    pub depth: u8,
+    /// Look for other triangulations of the manifold where a record is refused, as is always done for a mesh
+    #[arg(long)]
+    pub retriangulate: bool,
+    /// How many other triangulations are tried before giving up
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    pub tries: usize,
+}
+
+/// Models of hyperbolic space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ModelName {
+    /// The unit ball
+    Ball,
+    /// The upper half-space
+    HalfSpace,
 }
 
 /// How the inside follows polygons or cages.

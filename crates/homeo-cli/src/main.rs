@@ -10,6 +10,7 @@ mod bundle;
 mod display;
 mod eval;
 mod failure;
+mod hyperbolic;
 mod info;
 mod inside;
 mod logging;
@@ -43,8 +44,22 @@ use session::Session;
 
 /// As typed; wrong usage is reported before the command line is understood.
 const VERBS: [&str; 14] = [
-    "info", "map", "shell", "simplify", "remesh", "transfer", "pl", "warp", "morph", "blend", "bundle", "eval",
-    "verify", "report",
+    "info",
+    "map",
+    "shell",
+    "simplify",
+    "remesh",
+    "transfer",
+    "pl",
+    "warp",
+    "morph",
+    "blend",
+    "hyperbolic",
+    "bundle",
+    "eval",
+    "compose",
+    "verify",
+    "report",
 ];
 
 fn main() -> ExitCode {
@@ -111,6 +126,7 @@ fn perform(session: &Arc<Session>, verb: &Verb) -> Result<Answer> {
         Verb::Morph(options) => morph::run(session, options, &mut outputs),
         Verb::Blend(options) => morph::blend(session, options, &mut outputs),
         Verb::Bundle(options) => bundle::run(session, options, &mut outputs),
+        Verb::Hyperbolic(options) => hyperbolic::run(session, options, &mut outputs),
         Verb::Eval(options) => eval::run(session, options, &mut outputs),
         Verb::Compose(options) => eval::compose::run(session, options, &mut outputs),
         Verb::Verify(options) => verify::run(session, options),

@@ -3,7 +3,7 @@
 use std::io::{self, Cursor, Seek, Write};
 use std::path::Path;
 
-use homeo::certificate::{FoliationMap, StoredMap, read_map};
+use homeo::certificate::{FoliationMap, MapFileError, StoredMap, read_map};
 use homeo::input::SourceMesh;
 use homeo::progress::Progress;
 use homeo_core::planar::PlanarDomain;
@@ -128,11 +128,13 @@ pub fn read_bytes(session: &Session, path: &Path) -> Result<Vec<u8>> {
     std::fs::read(path).map_err(|e| Failure::input("cannot-open", format!("{} cannot be read: {e}", path.display())))
 }
 
-/// Reads a map that is to be used, and checks its certificate first.
-pub fn open_certified(session: &Session, path: &Path) -> Result<(StoredMap, Claim)> {
-    let bytes = read_bytes(session, path)?;
+/// Checks the certificate of a file that is to be used.
+///
+/// # Errors
+/// When it does not hold, or is undecided.
+pub fn certified(session: &Session, path: &Path, bytes: &[u8]) -> Result<Claim> {
     session.stage("certificate");
-    let claim = match verify_bytes(&bytes) {
+    let claim = match verify_bytes(bytes) {
         Ok(Verdict::Certified(claim)) => claim,
         Ok(Verdict::Refuted(witness)) => {
             let what = format!("the certificate of {} does not hold", path.display());
@@ -142,8 +144,18 @@ pub fn open_certified(session: &Session, path: &Path) -> Result<(StoredMap, Clai
         Err(error) => return Err(unreadable(path, &error)),
     };
     session.check()?;
+    Ok(claim)
+}
+
+/// Reads a map that is to be used, and checks its certificate first.
+pub fn open_certified(session: &Session, path: &Path) -> Result<(StoredMap, Claim)> {
+    let bytes = read_bytes(session, path)?;
+    let claim = certified(session, path, &bytes)?;
     session.stage("prepare");
-    let map = read_map(&bytes).map_err(|e| Failure::input("unreadable-map", format!("{}: {e}", path.display())))?;
+    let map = read_map(&bytes).map_err(|error| match error {
+        MapFileError::NoMap => Failure::input("no-map", format!("{}: {error}", path.display())),
+        _ => Failure::input("unreadable-map", format!("{}: {error}", path.display())),
+    })?;
     session.fact("input", map_json(&map, path));
     session.check()?;
     Ok((map, claim))

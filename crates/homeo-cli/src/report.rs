@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use homeo::certificate::{FoliationMap, PlanarMap, StoredMap};
+use homeo::certificate::{FoliationMap, PlanarMap, StoredMap, kind_of, read_hyperbolic};
 use homeo::export::{ReportData, VerdictWords, planar_page, report_of_map, report_of_shell, write_report};
 use homeo::map::{Bijection, PlanarBijection, Shell};
 use homeo::progress::Progress;
@@ -14,16 +14,21 @@ use serde_json::json;
 
 use crate::answer::Answer;
 use crate::args::ReportArgs;
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
+use crate::hyperbolic::picture;
 use crate::outputs::{Outputs, check_target};
 use crate::proof;
 use crate::sampled::{self, Sampled};
 use crate::session::Session;
-use crate::text::{Lines, ratio, stages};
+use crate::text::{self, Lines, ratio, stages};
 
 /// Writes the page of a map file.
 pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Result<Answer> {
     check_target(&options.output, &[&options.map])?;
+    let bytes = proof::read_bytes(session, &options.map)?;
+    if kind_of(&bytes).as_deref() == Some("hyperbolic") {
+        return structure(session, options, &bytes, outputs);
+    }
     let (map, claim) = proof::open_certified(session, &options.map)?;
     let (title, quality) = match map {
         StoredMap::Foliation(map) => {
@@ -59,6 +64,28 @@ pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Re
     let fields = json!({
         "certificate": proof::claim_json(&claim),
         "quality": quality,
+        "output": options.output.display().to_string(),
+    });
+    Ok(Answer::new(fields, lines.below(&format!("{title}: certified"))))
+}
+
+/// Writes the page of a hyperbolic structure.
+fn structure(session: &Session, options: &ReportArgs, bytes: &[u8], outputs: &mut Outputs) -> Result<Answer> {
+    let claim = proof::certified(session, &options.map, bytes)?;
+    session.stage("prepare");
+    let unreadable = |e| Failure::input("unreadable-map", format!("{}: {e}", options.map.display()));
+    let stored = read_hyperbolic(bytes).map_err(unreadable)?;
+    session.check()?;
+    let title = if stored.name.is_empty() { text::file_name(&options.map) } else { stored.name };
+    picture::stage_page(session, &options.output, &title, (&stored.triangulation, &stored.structure), &claim, outputs)?;
+    session.end_stage();
+    let mut lines = Lines::default();
+    lines.add("written", options.output.display());
+    lines.add("time", stages(&session.seconds()));
+    let volume = stored.structure.volume();
+    let fields = json!({
+        "certificate": proof::claim_json(&claim),
+        "quality": {"volume": {"low": volume.low(), "high": volume.high(), "value": volume.middle()}},
         "output": options.output.display().to_string(),
     });
     Ok(Answer::new(fields, lines.below(&format!("{title}: certified"))))

@@ -32,6 +32,9 @@ pub fn run(session: &Session, options: &VerifyArgs) -> Result<Answer> {
     session.check()?;
     let mut source = None;
     if let Some(mesh) = &options.source {
+        if claim.kind == "hyperbolic" {
+            return Err(Failure::input("other-source", NO_MESH));
+        }
         let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
         if is_abstract(&claim) {
             let message =
@@ -50,6 +53,9 @@ pub fn run(session: &Session, options: &VerifyArgs) -> Result<Answer> {
     });
     Ok(Answer::new(fields, words(&claim, options)))
 }
+
+const NO_MESH: &str = "the certificate holds, but it is one of a hyperbolic structure on glued tetrahedra, which has no mesh as \
+                       its source: leave out --source";
 
 /// Whether the map is one between planar domains.
 fn is_planar(claim: &Claim) -> bool {
@@ -110,6 +116,9 @@ fn described(claim: &Claim, bytes: &[u8], path: &Path) -> Value {
     if claim.kind == "unit-tangent-bundle" {
         let (vertices, triangles) = (count("base vertices"), count("base triangles"));
         return json!({"path": path.display().to_string(), "vertices": vertices, "triangles": triangles});
+    }
+    if claim.kind == "hyperbolic" {
+        return json!({"path": path.display().to_string(), "tetrahedra": count("tetrahedra")});
     }
     let cells = if matches!(claim.target.as_str(), "square" | "disk") { "triangles" } else { "tetrahedra" };
     json!({"path": path.display().to_string(), "vertices": count("source vertices"), cells: count("source cells")})

@@ -1,5 +1,7 @@
 //! The fundamental group: a generator for each face off a tree, a relation for each inner edge.
 
+mod free;
+
 use crate::skeleton::{EdgeClass, Skeleton};
 use crate::triangulation::Triangulation;
 use std::fmt;

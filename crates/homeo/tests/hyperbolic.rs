@@ -1,6 +1,6 @@
 //! Files of hyperbolic structures: what is proved here is certified by the independent checker.
 
-use homeo::certificate::{Provenance, write_hyperbolic};
+use homeo::certificate::{MapFileError, Provenance, kind_of, read_hyperbolic, read_map, write_hyperbolic};
 use homeo_manifold::hyperbolic::Structure;
 use homeo_manifold::{Permutation, Skeleton, Triangulation};
 use homeo_verify::{Verdict, verify_bytes};
@@ -60,4 +60,57 @@ fn a_structure_of_another_triangulation_is_not_certified() {
         Ok(Verdict::Refuted(witness)) => assert_eq!(witness.rule, "Y7"),
         other => panic!("{other:?}"),
     }
+}
+
+fn written(triangulation: &Triangulation) -> Vec<u8> {
+    let structure = Structure::find(triangulation, &Skeleton::new(triangulation)).unwrap();
+    let mut out = Cursor::new(Vec::new());
+    write_hyperbolic(triangulation, &structure, &Provenance::default(), &mut out).unwrap();
+    out.into_inner()
+}
+
+#[test]
+fn what_was_written_is_read_and_proved_again() {
+    let mut count = 0;
+    for triangulation in triangulations() {
+        let bytes = written(&triangulation);
+        assert_eq!(kind_of(&bytes).as_deref(), Some("hyperbolic"));
+        assert!(matches!(read_map(&bytes), Err(MapFileError::NoMap)));
+        let read = read_hyperbolic(&bytes).unwrap();
+        assert_eq!(read.triangulation, triangulation);
+        let first = Structure::find(&triangulation, &Skeleton::new(&triangulation)).unwrap();
+        for (again, length) in read.structure.lengths().iter().zip(first.lengths()) {
+            assert!(again.common(*length).is_some() && again.width() < 1e-9, "{again:?} {length:?}");
+        }
+        count += 1;
+    }
+    assert!(count >= 10, "{count}");
+}
+
+/// Damaged files: an error, or the structure, as there is only one; never another one, and no panic.
+#[test]
+fn damaged_files_are_refused_or_hold_the_same_structure() {
+    let triangulation = &triangulations()[0];
+    let bytes = written(triangulation);
+    let volume = read_hyperbolic(&bytes).unwrap().structure.volume();
+    let (mut refused, mut same, mut other) = (0, 0, 0);
+    for place in 0..bytes.len() {
+        for change in [0x01, 0x10, 0xff] {
+            let mut damaged = bytes.clone();
+            damaged[place] ^= change;
+            match read_hyperbolic(&damaged) {
+                Err(_) => refused += 1,
+                Ok(read) if read.triangulation == *triangulation => {
+                    assert!(read.structure.volume().common(volume).is_some());
+                    same += 1;
+                }
+                Ok(_) => other += 1,
+            }
+        }
+    }
+    for length in 0..bytes.len() {
+        assert!(read_hyperbolic(&bytes[..length]).is_err(), "{length}");
+    }
+    // Sums of the archive are over each array.
+    assert!(refused > 1000 && same > 100 && other == 0, "{refused} {same} {other}");
 }

@@ -6,10 +6,12 @@
 mod bundle;
 mod npy;
 mod read;
+mod read_hyperbolic;
 mod write;
 
 pub use bundle::write_bundle;
 pub use read::{MapFileError, read_map};
+pub use read_hyperbolic::{StoredStructure, kind_of, read_hyperbolic};
 pub use write::{
     content_sha256, write_composite, write_harmonic, write_hyperbolic, write_map, write_planar, write_shell,
 };

@@ -29,6 +29,12 @@ pub enum MapFileError {
     /// The manifest is missing, broken, or of a version or kind that this program does not know.
     #[error("manifest.json: {0}")]
     Manifest(String),
+    /// A hyperbolic structure, which [`read_hyperbolic`](super::read_hyperbolic) reads.
+    #[error(
+        "it holds a hyperbolic structure, which is no map of points: `homeo verify` checks it, `homeo report` shows it, \
+         `homeo hyperbolic` makes one"
+    )]
+    NoMap,
     /// An array is missing or has another type or shape.
     #[error("array {name} {what}")]
     Array {
@@ -89,11 +95,12 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
             is_of_dimension(&text("target"), 2)?;
             Ok(StoredMap::Planar(file.composite()?.into()))
         }
+        "hyperbolic" => Err(MapFileError::NoMap),
         other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
     }
 }
 
-struct File<'b> {
+pub(super) struct File<'b> {
     zip: ZipArchive<Cursor<&'b [u8]>>,
 }
 
@@ -108,7 +115,7 @@ fn inconsistent<T>(what: impl Into<String>) -> Result<T, MapFileError> {
 }
 
 impl<'b> File<'b> {
-    fn open(bytes: &'b [u8]) -> Result<Self, MapFileError> {
+    pub(super) fn open(bytes: &'b [u8]) -> Result<Self, MapFileError> {
         let zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| MapFileError::Archive(e.to_string()))?;
         Ok(Self { zip })
     }
@@ -126,7 +133,7 @@ impl<'b> File<'b> {
         Ok(Some(bytes))
     }
 
-    fn manifest(&mut self) -> Result<Value, MapFileError> {
+    pub(super) fn manifest(&mut self) -> Result<Value, MapFileError> {
         let bytes = self.entry("manifest.json")?.ok_or_else(|| MapFileError::Manifest("is missing".to_owned()))?;
         serde_json::from_slice(&bytes).map_err(|e| MapFileError::Manifest(e.to_string()))
     }
@@ -135,13 +142,13 @@ impl<'b> File<'b> {
         self.zip.by_name(&format!("{name}.npy")).is_ok()
     }
 
-    fn array<T: super::npy::Element>(&mut self, name: &str, columns: usize) -> Result<Vec<T>, MapFileError> {
+    pub(super) fn array<T: super::npy::Element>(&mut self, name: &str, columns: usize) -> Result<Vec<T>, MapFileError> {
         let bytes = self.entry(&format!("{name}.npy"))?;
         let missing = || MapFileError::Array { name: name.to_owned(), what: "is missing".to_owned() };
         decode(name, &bytes.ok_or_else(missing)?, columns)
     }
 
-    fn rows<T: super::npy::Element + Default, const N: usize>(
+    pub(super) fn rows<T: super::npy::Element + Default, const N: usize>(
         &mut self,
         name: &str,
     ) -> Result<Vec<[T; N]>, MapFileError> {

@@ -33,9 +33,12 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
+mod cover;
 mod data;
 mod facets;
+mod glb;
 mod histogram;
+mod hyperbolic;
 mod leaves;
 mod levels;
 mod marching;
@@ -50,7 +53,10 @@ mod simplify;
 #[cfg(test)]
 mod tests;
 
+pub use cover::{CoverPicture, FaceKind, Model};
 pub use data::{CellList, CellMesh, Leaf, ReportData, ShellPicture, TargetShape, VerdictWords};
+pub use glb::{write_glb, write_gltf};
+pub use hyperbolic::{HyperbolicReport, write_hyperbolic_page};
 pub use of_map::report_of_map;
 pub use of_shell::report_of_shell;
 pub use planar::planar_page;

@@ -21,21 +21,21 @@ const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 
 
 /// Writes the whole page.
 pub(super) fn write_page(data: &ReportData, scene: &Scene, out: &mut impl Write) -> io::Result<()> {
-    write_head(data, out)?;
+    write_head(&data.title, &data.subtitle, out)?;
     write_verdict_line(&data.verdict, out)?;
     write_viewer(data, scene, out)?;
     out.write_all(b"<div class=\"columns\">\n")?;
     write_claim(&data.verdict, out)?;
     write_limits(data, out)?;
     write_distortion(data, out)?;
-    write_facts(data, out)?;
+    write_facts(&data.facts, &data.stage_seconds, out)?;
     out.write_all(b"</div>\n</main>\n<footer>This page is self-contained and loads nothing from the network. The picture is a display; the claim rests on the map file, which <code>homeo verify</code> checks.</footer>\n")?;
     write_data(scene, out)?;
     writeln!(out, "<script>{}</script>\n</body>\n</html>", inside_script(VIEWER))
 }
 
-fn write_head(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
-    let (title, subtitle) = (escape(&data.title), escape(&data.subtitle));
+pub(super) fn write_head(title: &str, subtitle: &str, out: &mut impl Write) -> io::Result<()> {
+    let (title, subtitle) = (escape(title), escape(subtitle));
     write!(out, "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n")?;
     writeln!(out, "<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">")?;
     writeln!(out, "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">")?;
@@ -45,7 +45,7 @@ fn write_head(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "<div id=\"page-tools\"></div>\n</header>\n<main>")
 }
 
-fn write_verdict_line(verdict: &VerdictWords, out: &mut impl Write) -> io::Result<()> {
+pub(super) fn write_verdict_line(verdict: &VerdictWords, out: &mut impl Write) -> io::Result<()> {
     let (class, sign, word) =
         if verdict.holds { ("holds", "✓", "Certified") } else { ("fails", "✕", "Not certified") };
     writeln!(out, "<section class=\"verdict {class}\" aria-label=\"Verdict\">")?;
@@ -81,7 +81,7 @@ fn caption(target: TargetShape) -> &'static str {
     }
 }
 
-fn write_claim(verdict: &VerdictWords, out: &mut impl Write) -> io::Result<()> {
+pub(super) fn write_claim(verdict: &VerdictWords, out: &mut impl Write) -> io::Result<()> {
     let heading = if verdict.holds { "What was proved" } else { "What was found" };
     writeln!(out, "<section id=\"claim\">\n<h2>{heading}</h2>")?;
     for sentence in &verdict.sentences {
@@ -99,20 +99,23 @@ fn write_claim(verdict: &VerdictWords, out: &mut impl Write) -> io::Result<()> {
 }
 
 fn write_limits(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "<section id=\"limits\">\n<h2>What is not claimed</h2>\n<ul>")?;
-    for limit in &data.verdict.limits {
-        writeln!(out, "<li>{}</li>", escape(limit))?;
-    }
     // True of every report, whatever the caller says.
     let how = match data.target {
         TargetShape::Middle => "the source is cut along the prisms in floating point",
         TargetShape::Section => "parts of triangles that are too small to be seen are left out",
         _ => "the map is interpolated linearly in each cell",
     };
-    writeln!(
-        out,
-        "<li>That this picture is exact: coordinates are rounded to 16 bits per axis, and {how}.</li>\n</ul>\n</section>"
-    )
+    let drawn = format!("That this picture is exact: coordinates are rounded to 16 bits per axis, and {how}.");
+    write_limit_list(&data.verdict.limits, &drawn, out)
+}
+
+/// What is not claimed, the picture last.
+pub(super) fn write_limit_list(limits: &[String], drawn: &str, out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "<section id=\"limits\">\n<h2>What is not claimed</h2>\n<ul>")?;
+    for limit in limits {
+        writeln!(out, "<li>{}</li>", escape(limit))?;
+    }
+    writeln!(out, "<li>{}</li>\n</ul>\n</section>", escape(drawn))
 }
 
 fn write_distortion(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
@@ -145,17 +148,21 @@ fn write_distortion(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
     out.write_all(b"</section>\n")
 }
 
-fn write_facts(data: &ReportData, out: &mut impl Write) -> io::Result<()> {
+pub(super) fn write_facts(
+    facts: &[(String, String)],
+    stage_seconds: &[(String, f64)],
+    out: &mut impl Write,
+) -> io::Result<()> {
     writeln!(out, "<section id=\"facts\">\n<h2>Facts</h2>\n<table>\n<tbody>")?;
-    for (label, value) in &data.facts {
+    for (label, value) in facts {
         writeln!(out, "<tr><th scope=\"row\">{}</th><td>{}</td></tr>", escape(label), escape(value))?;
     }
     out.write_all(b"</tbody>\n</table>\n")?;
-    if !data.stage_seconds.is_empty() {
+    if !stage_seconds.is_empty() {
         writeln!(out, "<table class=\"stages\">\n<caption>Seconds by stage (wall clock)</caption>\n<tbody>")?;
-        let parts = data.stage_seconds.iter().filter(|(stage, _)| stage != "total");
+        let parts = stage_seconds.iter().filter(|(stage, _)| stage != "total");
         let longest = parts.map(|(_, seconds)| *seconds).fold(f64::MIN_POSITIVE, f64::max);
-        for (stage, seconds) in &data.stage_seconds {
+        for (stage, seconds) in stage_seconds {
             write!(
                 out,
                 "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"bar\">",
@@ -197,13 +204,13 @@ pub(super) fn escape(text: &str) -> String {
 }
 
 /// A program inside `<script>`: no end tag and no comment start may occur in it.
-fn inside_script(program: &str) -> String {
+pub(super) fn inside_script(program: &str) -> String {
     // In strings, templates and regular expressions, the only places where it can occur, `<\/` means `</`.
     program.replace("</script", "<\\/script").replace("<!--", "<\\!--")
 }
 
 /// JSON inside `<script>`.
-fn inside_json(json: &str) -> String {
+pub(super) fn inside_json(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
