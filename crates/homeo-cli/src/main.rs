@@ -43,7 +43,7 @@ use outputs::Outputs;
 use session::Session;
 
 /// As typed; wrong usage is reported before the command line is understood.
-const VERBS: [&str; 14] = [
+const VERBS: [&str; 16] = [
     "info",
     "map",
     "shell",

@@ -62,6 +62,6 @@ fn verbs_are_those_that_exist() {
     ] {
         assert!(help.contains(&format!("\n  {verb} ")), "{verb}");
     }
-    assert!(!help.contains("compose"), "`compose` does not exist yet");
+    assert!(!help.contains("polycube"), "`polycube` does not exist yet");
     assert!(Folder::new().line("--version").expect(0).stdout.starts_with("homeo "));
 }
