@@ -18,6 +18,10 @@ pub struct StoredStructure {
 }
 
 /// The kind that the manifest of a map file names, if it can be read: it says which reader to take.
+///
+/// ```
+/// assert_eq!(homeo::certificate::kind_of(b"no archive"), None);
+/// ```
 pub fn kind_of(bytes: &[u8]) -> Option<String> {
     let manifest = File::open(bytes).ok()?.manifest().ok()?;
     manifest.get("kind").and_then(Value::as_str).map(str::to_owned)

@@ -46,6 +46,20 @@ pub fn write_glb(picture: &CoverPicture, out: &mut impl Write) -> io::Result<()>
 ///
 /// # Errors
 /// When `out` cannot be written.
+///
+/// # Example
+/// ```
+/// # use homeo_manifold::{Skeleton, from_signature, hyperbolic::{Embedding, Structure}};
+/// use homeo::export::{CoverPicture, Model, write_gltf};
+/// # let tripus = from_signature("cPcbbbihq")?;
+/// # let skeleton = Skeleton::new(&tripus);
+/// # let embedding = Embedding::new(&tripus, &skeleton, &Structure::find(&tripus, &skeleton)?).unwrap();
+/// let mut file = Vec::new();
+/// write_gltf(&CoverPicture::new(&embedding, 0, Model::HalfSpace, 1), &mut file)?;
+/// let document: serde_json::Value = serde_json::from_slice(&file)?;
+/// assert_eq!(document["asset"]["version"], "2.0");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn write_gltf(picture: &CoverPicture, out: &mut impl Write) -> io::Result<()> {
     let (mut document, bytes) = document(picture);
     let mut uri = b"data:application/octet-stream;base64,".to_vec();
