@@ -1,8 +1,10 @@
 //! From meshes of solids with entangled tunnels to few tetrahedra and their hyperbolic structures:
 //!
 //! ```sh
-//! cargo run --release -p homeo-manifold --example knotted
+//! cargo run --release -p homeo-manifold --example knotted -- [FOLDER]
 //! ```
+//!
+//! In the folder, if one is given, the meshes are left as MEDIT files.
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/common/lattice.rs"]
@@ -27,8 +29,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn print_row(name: &str, paths: &[Vec<Place>]) -> Result<(), Box<dyn Error>> {
     let (vertices, cells) = lattice::tunnelled(paths);
+    if let Some(folder) = std::env::args().nth(1) {
+        let path = std::path::Path::new(&folder).join(format!("{}.mesh", name.replace(' ', "_").to_lowercase()));
+        std::fs::write(path, medit(&vertices, &cells))?;
+    }
     let start = Instant::now();
-    let mesh = Triangulation::from_complex(&TetrahedronComplex::from_indices(vertices, &cells)?)?;
+    let mesh = Triangulation::from_complex(&TetrahedronComplex::from_indices(vertices.len(), &cells)?)?;
     let closed = coned(&mesh)?;
     let coarse = without_inner_vertices(&closed)?;
     let collapsed = start.elapsed().as_secs_f64();
@@ -47,4 +53,12 @@ fn print_row(name: &str, paths: &[Vec<Place>]) -> Result<(), Box<dyn Error>> {
         signature(small)
     );
     Ok(())
+}
+
+fn medit(vertices: &[Place], cells: &[[u32; 4]]) -> String {
+    let mut text = format!("MeshVersionFormatted 2\nDimension 3\nVertices\n{}\n", vertices.len());
+    text.extend(vertices.iter().map(|[x, y, z]| format!("{x} {y} {z} 0\n")));
+    text.push_str(&format!("Tetrahedra\n{}\n", cells.len()));
+    text.extend(cells.iter().map(|&[a, b, c, d]| format!("{} {} {} {} 0\n", a + 1, b + 1, c + 1, d + 1)));
+    text + "End\n"
 }

@@ -15,7 +15,7 @@ fn mesh(paths: &[Vec<Place>], renumber: impl Fn(usize, usize) -> usize) -> Trian
     for (number, cell) in cells.iter().enumerate() {
         renamed[renumber(number, cells.len())] = *cell;
     }
-    Triangulation::from_complex(&TetrahedronComplex::from_indices(vertices, &renamed).unwrap()).unwrap()
+    Triangulation::from_complex(&TetrahedronComplex::from_indices(vertices.len(), &renamed).unwrap()).unwrap()
 }
 
 /// Few tetrahedra with truncated vertices, from many.

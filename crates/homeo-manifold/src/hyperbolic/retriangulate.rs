@@ -34,7 +34,7 @@ const FIRST_ROUNDS: usize = 60;
 /// # Example
 /// ```
 /// use homeo_manifold::{from_signature, hyperbolic::find_by_retriangulating};
-/// // A triangulation of a manifold of two tetrahedra with three of them, one edge of degree 3.
+/// // The tripus: its first triangulation has the structure.
 /// let found = find_by_retriangulating(&from_signature("cPcbbbihq")?, 1, 10, || true)?;
 /// assert!((found.structure.volume().middle() - 6.451_990_270_8).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -7,13 +7,8 @@
 //! all these tetrahedra away and glue, for each, what was across the two triangles. The result is homeomorphic, also with
 //! all vertices cut off that are not inner points.
 //!
-//! Proof: fill `e`, the triangles at `e` and the tetrahedra at `e` with the segments parallel to `e`, each triangle from one
-//! of the other edges to the other, each tetrahedron from one triangle to the other. Segments meet at their ends only, and as the graphs
-//! have no cycles, the ones that meet form trees: the space is decomposed into points and trees, `e` among them, each in
-//! a ball of its own, and this decomposition is continuous from above. Cell-like decompositions of 3-manifolds of this kind
-//! do not change them (Moore 1929 in the plane; Armentrout 1971); at a vertex that is no inner point the only tree that meets it is `e`,
-//! and the collapse adds the ball round the other end to its neighbourhood at a disk of its link. What is left is the quotient. The source asks for the same
-//! ("merges that keep the topology", section 4.2.2) and does not say when.
+//! Proof: `docs/theory/triangulations.md`. The source merges vertices "keeping the topology" (section 4.2.2) and does not say
+//! when that is so.
 
 use super::editor::{Editor, Joined};
 use crate::permutation::Permutation;

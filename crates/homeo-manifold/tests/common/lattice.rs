@@ -5,12 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A place on a lattice.
 pub type Place = [i32; 3];
 
-/// A box of cubes less tunnels one cube wide, each cube cut into six tetrahedra; the indices of their vertices, and their number.
+/// A box of cubes less tunnels one cube wide, each cube cut into six tetrahedra: vertices, and tetrahedra by their indices.
 ///
 /// The tunnels follow `paths` of places on a lattice of twice the width, from place to place along axes. Paths that do
 /// not share places keep a cube apart. The box ends one cube beyond all paths, but for the top, where it ends with them: a path that
 /// ends there has an opening.
-pub fn tunnelled(paths: &[Vec<Place>]) -> (usize, Vec<[u32; 4]>) {
+pub fn tunnelled(paths: &[Vec<Place>]) -> (Vec<Place>, Vec<[u32; 4]>) {
     let tunnels: BTreeSet<Place> = paths.iter().flat_map(|path| cubes_of(path)).collect();
     let bound = |axis: usize| tunnels.iter().map(move |place| place[axis]);
     let low = [0, 1, 2].map(|axis| bound(axis).min().unwrap() - 1);
@@ -38,7 +38,9 @@ pub fn tunnelled(paths: &[Vec<Place>]) -> (usize, Vec<[u32; 4]>) {
             }
         }
     }
-    (numbers.len(), cells)
+    let mut places: Vec<_> = numbers.into_iter().collect();
+    places.sort_by_key(|&(_, number)| number);
+    (places.into_iter().map(|(place, _)| place).collect(), cells)
 }
 
 /// The cubes along a path of places.
