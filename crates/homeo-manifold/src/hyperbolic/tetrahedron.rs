@@ -87,6 +87,25 @@ impl<R: Real> Tetrahedron<R> {
         })
     }
 
+    /// The tilts of the faces opposite the corners, where `Δ` is positive.
+    ///
+    /// With the covector `m` that is 1 on all four normals `v_i`, and `u` the unit normal of the face that points inwards, the
+    /// tilt is `⟨m, u⟩`; opposite corner `k` it is `(D - sum of N over the edges of the face) / sqrt(Δ D)`.
+    ///
+    /// ```
+    /// use homeo_manifold::hyperbolic::Tetrahedron;
+    /// // All edges of one length: sqrt((1 + c) / ((2 c - 1) (3 c - 1))), and negative.
+    /// let tilt = Tetrahedron::new([1.5_f64; 6]).tilts()[2];
+    /// assert!((tilt + (2.5_f64 / (2.0 * 3.5)).sqrt()).abs() < 1e-15);
+    /// ```
+    pub fn tilts(&self) -> [R; 4] {
+        [0, 1, 2, 3].map(|face| {
+            let size = self.faces[usize::from(face)];
+            let [a, b, c] = face_edges(face).map(|edge| self.cofactors[edge]);
+            (size - a - b - c) / (size * self.discriminant).sqrt()
+        })
+    }
+
     /// The root of minus the determinant of the Gram matrix of the angles: `Δ sqrt(Δ) / sqrt(D_0 D_1 D_2 D_3)`.
     pub(super) fn angle_root(&self) -> R {
         let [a, b, c, d] = self.faces;

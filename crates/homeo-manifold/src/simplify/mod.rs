@@ -8,10 +8,12 @@
 mod collapse;
 mod cone;
 mod editor;
+mod flips;
 mod moves;
 mod search;
 
 pub use cone::coned;
+pub use flips::flips;
 pub use search::{Simplifier, without_inner_vertices};
 
 use crate::triangulation::GluingError;
