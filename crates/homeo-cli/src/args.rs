@@ -713,6 +713,9 @@ pub struct HyperbolicArgs {
     /// Look for other triangulations of the manifold where a record is refused, as is always done for a mesh
     #[arg(long)]
     pub retriangulate: bool,
+    /// Take the canonical decomposition, which depends on the manifold alone, as is done for a mesh where its cells are tetrahedra
+    #[arg(long)]
+    pub canonical: bool,
     /// How many other triangulations are tried before giving up
     #[arg(long, value_name = "N", default_value_t = 100)]
     pub tries: usize,

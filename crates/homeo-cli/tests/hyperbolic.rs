@@ -112,6 +112,28 @@ fn bad_input_is_named() {
 }
 
 #[test]
+fn the_canonical_decomposition_is_the_name_of_the_manifold() {
+    let folder = Folder::new().with_testdata();
+    // A triangulation with three tetrahedra of a manifold whose canonical decomposition has two.
+    let line = "hyperbolic --signature dLQacbcjgjj -o out.homeo --json";
+    let kept = folder.line(line).expect(0).json();
+    let taken = folder.line(&format!("{line} --canonical")).expect(0).json();
+    assert_eq!((&kept["triangulation"]["tetrahedra"], &taken["triangulation"]["tetrahedra"]), (&json!(3), &json!(2)));
+    assert_eq!(kept["certificate"]["target"], "geodesic-boundary");
+    assert_eq!(taken["certificate"]["target"], "canonical-decomposition");
+    let name = &taken["canonical"]["signature"];
+    assert_eq!((&kept["canonical"]["signature"], &taken["triangulation"]["signature"]), (name, name));
+    assert!((volume(&kept) - volume(&taken)).abs() < 1e-9);
+    assert_eq!(folder.line("verify out.homeo --json").expect(0).json()["certificate"], taken["certificate"]);
+    // The same for a mesh of it, whose triangulation nobody asked for.
+    let three = from_signature("dLQacbcjgjj").unwrap();
+    folder.write("three.mesh", &solid(&three));
+    let mesh = folder.line("hyperbolic three.mesh --json").expect(0).json();
+    assert_eq!(&mesh["triangulation"]["signature"], name);
+    assert_eq!(mesh["certificate"]["target"], "canonical-decomposition");
+}
+
+#[test]
 fn a_signature_gives_the_same_as_its_record() {
     let folder = Folder::new().with_testdata();
     folder.write("signature.txt", "cPcbbbihq\n");

@@ -1,9 +1,10 @@
-//! Rules Y1-Y7: a hyperbolic structure with geodesic boundary on glued tetrahedra.
+//! Rules Y1-Y8: a hyperbolic structure with geodesic boundary on glued tetrahedra.
 //!
 //! *Theorem.* Let the hyperbolic cosines of lengths be such that the Gram matrix of every tetrahedron has a negative
 //! determinant, and let the dihedral angles round each edge add up to 2π. Then the truncated tetrahedra with these lengths fit
 //! together to a complete hyperbolic structure with totally geodesic boundary. Krawczyk's test shows that such numbers are in
-//! the box. (Proof: `docs/theory/hyperbolic.md`.)
+//! the box. If tilts add up to less than zero at every face, the triangulation is the canonical decomposition of the manifold.
+//! (Proofs: `docs/theory/hyperbolic.md`.)
 
 mod angles;
 mod gluing;
@@ -11,14 +12,18 @@ mod gluing;
 use crate::ball::Ball;
 use crate::map_file::HyperbolicData;
 use crate::verdict::{Checked, check, decidable, refuted};
-use angles::{Jet, angles, discriminant};
+use angles::{Jet, angles, discriminant, tilts};
 use gluing::Gluing;
 
 /// More edges are beyond this checker: its time grows with the cube.
 const MOST_EDGES: usize = 1000;
 
 /// Applies the rules and counts what was checked.
-pub(crate) fn check_hyperbolic(data: &HyperbolicData, vertices: usize) -> Checked<Vec<(&'static str, u64)>> {
+pub(crate) fn check_hyperbolic(
+    data: &HyperbolicData,
+    vertices: usize,
+    is_canonical: bool,
+) -> Checked<Vec<(&'static str, u64)>> {
     let gluing = Gluing::new(&data.gluings)?;
     let edges = gluing.edges()?;
     gluing.check_orientation()?;
@@ -35,13 +40,18 @@ pub(crate) fn check_hyperbolic(data: &HyperbolicData, vertices: usize) -> Checke
     decidable(count <= MOST_EDGES, "there are more than 1000 edges", "a triangulation with fewer tetrahedra")?;
     let system = System { of: &edges.of, centre: &data.cosh_lengths, radius };
     system.check_sums()?;
-    Ok(vec![
+    let mut checked = vec![
         ("tetrahedra, glued face to face and oriented (rules Y1, Y3)", (data.gluings.len() / 4) as u64),
         ("edges not glued to themselves end for end (rule Y2)", count as u64),
         ("vertices with links of negative Euler characteristic (rule Y4)", vertices as u64),
         ("tetrahedra that are truncated ones on the whole box (rules Y5, Y6)", (data.gluings.len() / 4) as u64),
         ("angle sums round edges that are 2π at one point of the box (rule Y7)", count as u64),
-    ])
+    ];
+    if is_canonical {
+        system.check_tilts(&gluing)?;
+        checked.push(("faces whose tilts add up to less than zero (rule Y8)", (data.gluings.len() / 2) as u64));
+    }
+    Ok(checked)
 }
 
 /// The equations of the angle sums.
@@ -75,6 +85,22 @@ impl System<'_> {
             }
         }
         Ok((sums, slopes))
+    }
+
+    /// Rule Y8.
+    fn check_tilts(&self, gluing: &Gluing) -> Checked {
+        let of = |classes: &[u32; 6]| {
+            tilts(classes.map(|class| Ball { middle: self.centre[class as usize], radius: self.radius }))
+        };
+        let tilts: Vec<[Ball; 4]> = self.of.iter().map(of).collect();
+        for (number, (face, other)) in gluing.faces().enumerate() {
+            let sum = tilts[face.0][face.1] + tilts[other.0][other.1];
+            let message = format!("the tilts at face {} add up to more than zero", number % 4);
+            check(!sum.is_positive(), "Y8", &message, &[face.0, other.0], &[])?;
+            let message = format!("rule Y8: the sign of the sum of tilts at face {} is not known", number % 4);
+            decidable(sum.is_negative(), &message, "better lengths, or the target geodesic-boundary")?;
+        }
+        Ok(())
     }
 
     /// Rule Y7.

@@ -10,7 +10,7 @@
 //! 4. `triangles`, `shell` (L1-L6, of `docs/theory/shells.md`);
 //! 5. `rings` (D), `harmonic` (H1-H5, of `docs/theory/polygons.md`);
 //! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3;
-//! 7. `hyperbolic` (Y1-Y7, of `docs/theory/hyperbolic.md`);
+//! 7. `hyperbolic` (Y1-Y8, of `docs/theory/hyperbolic.md`);
 //! 8. `bundle` (T1-T8, of `docs/theory/bundles.md`).
 //!
 //! # Complexity
@@ -169,6 +169,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
     let checked = check_rules(map)?;
     let is_immersed = map.manifest.target == Target::ImmersedShell;
     let is_embedded = map.manifest.target == Target::EmbeddedShell;
+    let is_canonical = map.manifest.target == Target::CanonicalDecomposition;
     let (kind, theorem) = match map.manifest.kind {
         Kind::Foliation => ("foliation", "theorem on locally bipolar foliations, rules 1-8"),
         Kind::PiecewiseLinear => ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P"),
@@ -177,6 +178,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::Shell => ("shell", "theorem on shells, rules L1-L6"),
         Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
         Kind::CompositeMeanValue => ("composite-mean-value", "theorem on composite mean value maps, rules D and C1-C3"),
+        Kind::Hyperbolic if is_canonical => ("hyperbolic", "theorems on glued truncated tetrahedra and tilts, rules Y1-Y8"),
         Kind::Hyperbolic => ("hyperbolic", "theorem on glued truncated tetrahedra, rules Y1-Y7"),
         Kind::UnitTangentBundle => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T8"),
     };
@@ -193,6 +195,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::Annulus => ("annulus", "target polygon with a hole"),
         Target::Domain => ("domain", "target polygon with holes"),
         Target::GeodesicBoundary => ("geodesic-boundary", "manifold"),
+        Target::CanonicalDecomposition => ("canonical-decomposition", "manifold"),
         Target::UnitTangentBundle => ("unit-tangent-bundle", "surface"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
@@ -243,6 +246,12 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
              totally geodesic boundary, made of truncated tetrahedra; the hyperbolic cosines of the lengths of its {edges} \
              edges are in the stated box, and are the only ones there ({theorem})."
         );
+        if is_canonical {
+            statement.push_str(
+                " The tetrahedra are the cells of its canonical decomposition: two manifolds with such a claim are homeomorphic \
+                 if and only if their gluings are the same up to the names of tetrahedra and corners.",
+            );
+        }
         overlaps = "By Mostow and Prasad it is the only such structure of the manifold; the checker relies on this theorem for it.";
     }
     if let MapData::Bundle(data) = &map.data {
@@ -293,7 +302,8 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
         return composite::check_composite(data);
     }
     if let MapData::Hyperbolic(data) = &map.data {
-        return hyperbolic::check_hyperbolic(data, map.manifest.source.vertices);
+        let is_canonical = map.manifest.target == Target::CanonicalDecomposition;
+        return hyperbolic::check_hyperbolic(data, map.manifest.source.vertices, is_canonical);
     }
     if let MapData::Bundle(data) = &map.data {
         return bundle::check_bundle(data);

@@ -33,6 +33,9 @@ pub(crate) enum Target {
     /// A hyperbolic structure with geodesic boundary.
     #[serde(rename = "geodesic-boundary")]
     GeodesicBoundary,
+    /// The same, on the canonical decomposition of the manifold.
+    #[serde(rename = "canonical-decomposition")]
+    CanonicalDecomposition,
     /// The unit tangent bundle of a surface.
     #[serde(rename = "unit-tangent-bundle")]
     UnitTangentBundle,
@@ -49,10 +52,14 @@ impl Target {
         matches!(self, Target::Polygon | Target::Annulus | Target::Domain)
     }
 
+    /// Whether hyperbolic structures reach it, and no maps.
+    pub(crate) fn is_geodesic(self) -> bool {
+        matches!(self, Target::GeodesicBoundary | Target::CanonicalDecomposition)
+    }
+
     /// Vertices of a cell: three or four.
     pub(crate) fn cell_size(self) -> usize {
-        let is_solid =
-            matches!(self, Target::Cube | Target::Ball | Target::GeodesicBoundary | Target::UnitTangentBundle);
+        let is_solid = matches!(self, Target::Cube | Target::Ball | Target::UnitTangentBundle) || self.is_geodesic();
         if is_solid { 4 } else { 3 }
     }
 }
@@ -139,8 +146,8 @@ impl Manifest {
         let is_possible = !has_holes || manifest.kind == Kind::CompositeMeanValue;
         readable(is_possible, "only composite mean value maps have a target with several holes")?;
         let is_hyperbolic = manifest.kind == Kind::Hyperbolic;
-        let is_geodesic = manifest.target == Target::GeodesicBoundary;
-        readable(is_hyperbolic == is_geodesic, "kind hyperbolic and target geodesic-boundary belong together")?;
+        let is_geodesic = manifest.target.is_geodesic();
+        readable(is_hyperbolic == is_geodesic, "kind hyperbolic and the targets of such structures belong together")?;
         let is_bundle = manifest.kind == Kind::UnitTangentBundle;
         let has_bundle = manifest.target == Target::UnitTangentBundle;
         readable(is_bundle == has_bundle, "kind and target unit-tangent-bundle belong together")?;

@@ -31,7 +31,7 @@ pub struct Claim {
     /// `unit-tangent-bundle`.
     pub kind: String,
     /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon`,
-    /// `annulus`, `domain`, `geodesic-boundary` or `unit-tangent-bundle`.
+    /// `annulus`, `domain`, `geodesic-boundary`, `canonical-decomposition` or `unit-tangent-bundle`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]

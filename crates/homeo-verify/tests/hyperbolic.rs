@@ -21,6 +21,7 @@ struct Arrays {
     cosh: Vec<f64>,
     radius: f64,
     vertices: usize,
+    is_canonical: bool,
 }
 
 impl Arrays {
@@ -30,8 +31,9 @@ impl Arrays {
         let mut hashed: Vec<u8> =
             [self.vertices as u64, 4, cells as u64].iter().flat_map(|x| x.to_le_bytes()).collect();
         hashed.extend(&gluings);
+        let target = if self.is_canonical { "canonical-decomposition" } else { "geodesic-boundary" };
         let manifest = json!({
-            "format": "homeo", "version": 1, "kind": "hyperbolic", "dimension": 3, "target": "geodesic-boundary",
+            "format": "homeo", "version": 1, "kind": "hyperbolic", "dimension": 3, "target": target,
             "centre": null,
             "source": {"name": self.name, "vertices": self.vertices, "cells": cells, "content_sha256": sha256(&hashed)},
         });
@@ -67,7 +69,7 @@ fn arrays(record: &Value) -> Arrays {
         }
     }
     let vertices = record["boundaryGenus"].as_array().unwrap().len();
-    Arrays { name: record["isoSig"].to_string(), gluings, cosh, radius: 1e-9, vertices }
+    Arrays { name: record["isoSig"].to_string(), gluings, cosh, radius: 1e-9, vertices, is_canonical: record["isCanonicalDecomposition"] == true }
 }
 
 #[test]
@@ -76,7 +78,8 @@ fn true_structures_are_certified() {
     for arrays in structures() {
         match arrays.verdict() {
             Ok(Verdict::Certified(claim)) => {
-                assert_eq!((claim.kind.as_str(), claim.target.as_str()), ("hyperbolic", "geodesic-boundary"));
+                let target = if arrays.is_canonical { "canonical-decomposition" } else { "geodesic-boundary" };
+                assert_eq!((claim.kind.as_str(), claim.target.as_str()), ("hyperbolic", target));
                 assert!(claim.checked.iter().all(|(_, count)| *count > 0), "{:?}", claim.checked);
             }
             other => panic!("{}: {other:?}", arrays.name),
@@ -85,6 +88,22 @@ fn true_structures_are_certified() {
         count += 1;
     }
     assert!(count >= 10, "{count}");
+}
+
+/// Geometric triangulations that are not the canonical decomposition, and are claimed to be.
+#[test]
+fn false_claims_of_being_canonical_are_refuted() {
+    let mut count = 0;
+    for mut arrays in structures().into_iter().filter(|arrays| !arrays.is_canonical) {
+        arrays.is_canonical = true;
+        match arrays.verdict() {
+            Ok(Verdict::Refuted(witness)) => assert_eq!(witness.rule, "Y8"),
+            other => panic!("{}: {other:?}", arrays.name),
+        }
+        assert!(flaw(&arrays).is_some_and(|flaw| flaw.contains("bend")), "{}", arrays.name);
+        count += 1;
+    }
+    assert!(count >= 2, "{count}");
 }
 
 /// Curvatures of 1e-6 and less are no proof: the gluing with weights [0, 1] against it, with ever longer edges.
@@ -146,7 +165,7 @@ fn every_mutation_is_rejected_or_harmless() {
     }
     counts.iter().for_each(|(outcome, count)| println!("{count:>6} {outcome}"));
     // A single reflected gluing reverses an edge; Y3 has a test of its own.
-    for rule in ["Y1", "Y2", "Y4", "Y5", "Y6", "Y7"] {
+    for rule in ["Y1", "Y2", "Y4", "Y5", "Y6", "Y7", "Y8"] {
         let found = counts.get(&format!("refuted by {rule}")).copied().unwrap_or(0);
         assert!(found >= 10, "only {found} mutations fail by {rule}: the test tests little");
     }
@@ -158,8 +177,9 @@ fn every_mutation_is_rejected_or_harmless() {
 fn mutate(arrays: &mut Arrays, random: &mut Random) -> String {
     let row = random.below(arrays.gluings.len());
     let edge = random.below(arrays.cosh.len());
-    let kind = random.below(12);
+    let kind = random.below(13);
     match kind {
+        12 => arrays.is_canonical = !arrays.is_canonical,
         0 => arrays.gluings[row][random.below(5)] = random.below(5) as u32,
         1 => {
             let (a, b) = (1 + random.below(4), 1 + random.below(4));
@@ -237,7 +257,52 @@ fn flaw(arrays: &Arrays) -> Option<String> {
     }
     let is_solved = sums(&class, &cosh).is_some_and(|sums| sums.iter().all(|sum| sum.abs() < 1e-9));
     let is_near = cosh.iter().zip(&arrays.cosh).all(|(a, b)| (a - b).abs() <= arrays.radius * 1.001 + 1e-12);
-    (!is_solved || !is_near).then(|| format!("the solution is {cosh:?}"))
+    if !is_solved || !is_near {
+        return Some(format!("the solution is {cosh:?}"));
+    }
+    (arrays.is_canonical && !all_bend(&arrays.gluings, &class, &cosh)).then(|| "cells do not bend".to_owned())
+}
+
+/// Whether across every face the next vertex is beyond the plane through the four vertices on this side. It is found from its
+/// products with those of the face; no tilts.
+fn all_bend(gluings: &[[u32; 5]], class: &[[usize; 6]], cosh: &[f64]) -> bool {
+    let product = |t: usize, a: usize, b: usize| {
+        let edge = EDGES.iter().position(|edge| *edge == [a.min(b), a.max(b)]);
+        edge.map_or(1.0, |edge| -cosh[class[t][edge]])
+    };
+    gluings.iter().enumerate().all(|(row, gluing)| {
+        let (t, face) = (row / 4, row % 4);
+        let (there, image) = (gluing[0] as usize, |corner: usize| gluing[1 + corner] as usize);
+        let inverse = inverse(std::array::from_fn(|a| std::array::from_fn(|b| product(t, a, b))));
+        // Products of the next vertex with the corners here; the one with the corner off the face is unknown.
+        let mut next: [f64; 4] = std::array::from_fn(|corner| product(there, image(corner), image(face)));
+        next[face] = 0.0;
+        let mixed: f64 = (0..4).map(|k| inverse[face][k] * next[k]).sum();
+        let rest: f64 = (0..16).map(|k| inverse[k / 4][k % 4] * next[k / 4] * next[k % 4]).sum();
+        // Its square is 1, and it lies on the other side of the face.
+        let root = (mixed * mixed - inverse[face][face] * (rest - 1.0)).sqrt();
+        next[face] = (-mixed - root) / inverse[face][face];
+        (0..16).map(|k| inverse[k / 4][k % 4] * next[k % 4]).sum::<f64>() > 1.0
+    })
+}
+
+fn inverse(mut matrix: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
+    let mut inverse = std::array::from_fn(|a| std::array::from_fn(|b| f64::from(u8::from(a == b))));
+    for column in 0..4 {
+        let pivot = (column..4).max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs())).unwrap();
+        matrix.swap(column, pivot);
+        inverse.swap(column, pivot);
+        let scale = matrix[column][column];
+        matrix[column].iter_mut().chain(&mut inverse[column]).for_each(|x: &mut f64| *x /= scale);
+        for row in (0..4).filter(|&row| row != column) {
+            let factor = matrix[row][column];
+            for k in 0..4 {
+                matrix[row][k] -= factor * matrix[column][k];
+                inverse[row][k] -= factor * inverse[column][k];
+            }
+        }
+    }
+    inverse
 }
 
 /// Classes of edges by joining until nothing changes; nothing if the gluing is not mutual.

@@ -24,7 +24,7 @@ use search::Found;
 pub fn run(session: &Session, options: &HyperbolicArgs, outputs: &mut Outputs) -> Result<Answer> {
     check_outputs(options)?;
     let input = input::read(session, options)?;
-    let found = search::structure(session, &input, options.retriangulate, options.tries)?;
+    let found = search::structure(session, &input, options)?;
     session.check()?;
     let provenance = provenance(session, options, &input, &found);
     let claim = proof::write_and_check(session, options.output.as_deref(), outputs, |mut out| {
@@ -57,7 +57,7 @@ fn provenance(session: &Session, options: &HyperbolicArgs, input: &Input, found:
         source_name: input.name.clone(),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
-            "entry": options.entry, "retriangulate": options.retriangulate, "tries": options.tries,
+            "entry": options.entry, "retriangulate": options.retriangulate, "canonical": options.canonical, "tries": options.tries,
             "seed": session.common.seed, "tried": found.tried,
         }),
     }

@@ -3,12 +3,13 @@
 use std::collections::HashSet;
 
 use homeo::progress::Progress;
-use homeo_manifold::hyperbolic::{NoMetric, Structure};
+use homeo_manifold::hyperbolic::{Canonical, NoMetric, NotCanonical, Structure, find_canonical};
 use homeo_manifold::simplify::{Simplifier, SimplifyError, without_inner_vertices};
 use homeo_manifold::{FundamentalGroup, Homology, Links, Skeleton, Triangulation, signature};
 use serde_json::json;
 
 use super::input::Input;
+use crate::args::HyperbolicArgs;
 use crate::failure::{Exit, Failure, Result};
 use crate::session::Session;
 
@@ -22,6 +23,8 @@ pub struct Found {
     pub structure: Structure,
     /// How many other triangulations were tried before, different ones.
     pub tried: usize,
+    /// The canonical decomposition, if it was found.
+    pub canonical: std::result::Result<Canonical, NotCanonical>,
 }
 
 /// The genera of the boundary components that cut-off vertices leave, in ascending order; spheres are inner points.
@@ -33,11 +36,32 @@ pub fn genera(triangulation: &Triangulation) -> Vec<usize> {
     genera
 }
 
-/// Finds and proves the structure of a manifold.
+/// Finds and proves the structure of a manifold, and the canonical decomposition; takes this for a mesh, or if it is asked for.
 ///
 /// # Errors
 /// With exit code 3 where it is proved that there is none, with 4 where none was found.
-pub fn structure(session: &Session, input: &Input, retriangulate: bool, tries: usize) -> Result<Found> {
+pub fn structure(session: &Session, input: &Input, options: &HyperbolicArgs) -> Result<Found> {
+    let mut found = any_structure(session, input, options.retriangulate, options.tries)?;
+    session.stage("canonical");
+    found.canonical =
+        find_canonical(&found.triangulation, &found.structure, options.tries.max(1), || session.check().is_ok());
+    session.check()?;
+    match &found.canonical {
+        Ok(canonical) if options.canonical || input.is_free => {
+            unless_same(&found.triangulation, &canonical.triangulation)?;
+            (found.triangulation, found.structure) = (canonical.triangulation.clone(), canonical.structure.clone());
+            found.skeleton = Skeleton::new(&found.triangulation);
+        }
+        Err(reason) if options.canonical => {
+            let message = format!("{}: {reason}\n  nothing was written; without --canonical it is", input.name);
+            return Err(Failure::limits("not-canonical", message));
+        }
+        _ => {}
+    }
+    Ok(found)
+}
+
+fn any_structure(session: &Session, input: &Input, retriangulate: bool, tries: usize) -> Result<Found> {
     session.stage("metric");
     let refusal = match attempt(input.triangulation.clone(), 0) {
         Ok(found) => return Ok(found),
@@ -69,7 +93,8 @@ pub fn structure(session: &Session, input: &Input, retriangulate: bool, tries: u
 fn attempt(triangulation: Triangulation, tried: usize) -> std::result::Result<Found, NoMetric> {
     let skeleton = Skeleton::new(&triangulation);
     let structure = Structure::find(&triangulation, &skeleton)?;
-    Ok(Found { triangulation, skeleton, structure, tried })
+    let canonical = Err(NotCanonical::NotFound { tried: 0 });
+    Ok(Found { triangulation, skeleton, structure, tried, canonical })
 }
 
 /// Other triangulations of the manifold, each once; how many where none has a structure.

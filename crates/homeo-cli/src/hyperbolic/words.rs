@@ -20,6 +20,7 @@ pub fn fields(options: &HyperbolicArgs, found: &Found, claim: &Claim) -> Value {
     json!({
         "triangulation": triangulation(&found.triangulation, &found.skeleton),
         "tried": found.tried,
+        "canonical": canonical(found),
         "metric": {
             "edge_lengths": structure.lengths().iter().copied().map(bounds).collect::<Vec<_>>(),
             "dihedral_angles": structure.angles().iter().map(middles).collect::<Vec<_>>(),
@@ -40,6 +41,33 @@ fn triangulation(triangulation: &Triangulation, skeleton: &Skeleton) -> Value {
         "boundary_genera": genera(triangulation),
         "edge_degrees": degrees(skeleton),
     })
+}
+
+fn canonical(found: &Found) -> Value {
+    match &found.canonical {
+        Ok(canonical) => json!({
+            "found": true,
+            "signature": signature(&canonical.triangulation),
+            "tetrahedra": canonical.triangulation.len(),
+            "tried": canonical.tried,
+        }),
+        Err(reason) => json!({"found": false, "reason": reason.to_string()}),
+    }
+}
+
+fn canonical_in_words(found: &Found) -> String {
+    match &found.canonical {
+        Ok(canonical) if canonical.triangulation.len() == found.triangulation.len()
+            && signature(&canonical.triangulation) == signature(&found.triangulation) =>
+        {
+            "yes: the signature is the name of the manifold".to_owned()
+        }
+        Ok(canonical) => {
+            let (tetrahedra, name) = (canonical.triangulation.len(), signature(&canonical.triangulation));
+            format!("{name} ({tetrahedra} tetrahedra) is the name of the manifold; --canonical takes it")
+        }
+        Err(reason) => reason.to_string(),
+    }
 }
 
 fn degrees(skeleton: &Skeleton) -> Vec<usize> {
@@ -70,6 +98,7 @@ pub fn text(session: &Session, options: &HyperbolicArgs, input: &Input, found: &
     let (least, largest) = (angles().fold(f64::INFINITY, f64::min), angles().fold(0.0, f64::max));
     lines.add("dihedral angles", format!("{least:.3} to {largest:.3} degrees"));
     lines.add("volume", digits(structure.volume()));
+    lines.add("canonical", canonical_in_words(found));
     lines.add("certificate", proof::holds(claim));
     lines.add("time", stages(&session.seconds()));
     for path in [&options.output, &options.report, &options.picture].into_iter().flatten() {

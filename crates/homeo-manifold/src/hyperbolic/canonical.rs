@@ -42,7 +42,7 @@ pub enum NotCanonical {
 }
 
 /// The sums of the tilts of both sides, for each face of each tetrahedron: negative where the two cells bend as those of the
-/// canonical decomposition do.
+/// canonical decomposition do. They are enclosed on the whole box in which the structure is proved to be, like in its certificate.
 ///
 /// `structure` must be one of this triangulation; all faces must be glued.
 ///
@@ -57,13 +57,22 @@ pub enum NotCanonical {
 /// ```
 pub fn tilt_sums(triangulation: &Triangulation, structure: &Structure) -> Vec<[Enclosure; 4]> {
     let equations = Equations::new(&Skeleton::new(triangulation));
-    let tilts: Vec<_> = equations.tetrahedra(structure.cosh_lengths()).map(|tetrahedron| tetrahedron.tilts()).collect();
+    let radius = structure.radius();
+    let side = |&cosh: &f64| Enclosure::between((cosh - radius).next_down(), (cosh + radius).next_up());
+    let cosh: Vec<_> = structure.centre().iter().map(side).collect();
+    let tilts: Vec<_> = equations.tetrahedra(&cosh).map(|tetrahedron| tetrahedron.tilts()).collect();
     let sum = |tetrahedron: u32, face: u8| {
         let own = tilts[tetrahedron as usize][usize::from(face)];
         let Some(gluing) = triangulation.neighbour(tetrahedron, face) else { return Enclosure::WHOLE };
         own + tilts[gluing.tetrahedron as usize][usize::from(gluing.corners.image(face))]
     };
     (0..tilts.len() as u32).map(|tetrahedron| [0, 1, 2, 3].map(|face| sum(tetrahedron, face))).collect()
+}
+
+/// Whether all tilt sums are proved to be negative: the triangulation is the canonical decomposition then. (Otherwise it may be,
+/// all the same.)
+pub fn is_canonical(triangulation: &Triangulation, structure: &Structure) -> bool {
+    tilt_sums(triangulation, structure).iter().flatten().all(|sum| sum.high() < 0.0)
 }
 
 /// Looks for the canonical decomposition, from a triangulation with its structure, if its cells are tetrahedra.
@@ -176,5 +185,72 @@ impl Search {
         }
         let rank = Reverse((faces.len(), triangulation.len(), self.seen.len()));
         self.waiting.push(Candidate { rank, triangulation, structure, faces });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::from_signature;
+    use crate::hyperbolic::Embedding;
+    use crate::hyperbolic::minkowski::{Vector, product};
+
+    fn structure(triangulation: &Triangulation) -> Structure {
+        Structure::find(triangulation, &Skeleton::new(triangulation)).unwrap()
+    }
+
+    /// The vector with product 1 with four others, by Cramer's rule.
+    fn one_on(normals: [Vector; 4]) -> Vector {
+        // Rows of the equations, with the sign of the time.
+        let mut rows = normals.map(|[t, x, y, z]| [-t, x, y, z, 1.0]);
+        for column in 0..4 {
+            let pivot = (column..4).max_by(|&a, &b| rows[a][column].abs().total_cmp(&rows[b][column].abs())).unwrap();
+            rows.swap(column, pivot);
+            for row in (0..4).filter(|&row| row != column) {
+                let factor = rows[row][column] / rows[column][column];
+                for k in 0..5 {
+                    rows[row][k] -= factor * rows[column][k];
+                }
+            }
+        }
+        [0, 1, 2, 3].map(|k| rows[k][4] / rows[k][k])
+    }
+
+    /// In the cover, the vertex on the other side of a face is beyond the plane through the vertices on this side exactly if the
+    /// tilts add up to less than zero.
+    #[test]
+    fn tilt_sums_tell_on_which_side_the_next_vertex_lies() {
+        let (mut convex, mut concave) = (0, 0);
+        for name in ["cPcbbbihq", "dLQbcccdefo", "dLQbcccdeko", "dLQbcccdhsn", "dLQacbcjgjj", "dLQacccjnfo"] {
+            let Ok(first) = from_signature(name) else { panic!("{name}") };
+            let faces: Vec<_> = first.faces().collect();
+            for triangulation in [vec![first.clone()], flips(&first, &faces).unwrap()].concat() {
+                let skeleton = Skeleton::new(&triangulation);
+                let Ok(structure) = Structure::find(&triangulation, &skeleton) else { continue };
+                let embedding = Embedding::new(&triangulation, &skeleton, &structure).unwrap();
+                let sums = tilt_sums(&triangulation, &structure);
+                for (tetrahedron, face) in triangulation.faces() {
+                    let covector = one_on(embedding.planes()[tetrahedron as usize]);
+                    let gluing = triangulation.neighbour(tetrahedron, face).unwrap();
+                    let next = embedding.planes_across(tetrahedron, face)[usize::from(gluing.corners.image(face))];
+                    let sum = sums[tetrahedron as usize][usize::from(face)];
+                    let beyond = product(covector, next) - 1.0;
+                    assert!(beyond.abs() > 1e-9, "{name}: {beyond}");
+                    assert_eq!(sum.high() < 0.0, beyond > 0.0, "{name}: {sum:?} {beyond}");
+                    assert_eq!(sum.low() > 0.0, beyond < 0.0, "{name}: {sum:?} {beyond}");
+                    if beyond > 0.0 { convex += 1 } else { concave += 1 }
+                }
+            }
+        }
+        assert!(convex > 100 && concave > 10, "{convex} {concave}");
+    }
+
+    #[test]
+    fn a_search_that_may_not_go_on_finds_nothing() {
+        let other = flips(&from_signature("cPcbbbihq").unwrap(), &[(0, 0)]).unwrap().remove(0);
+        let structure = structure(&other);
+        assert!(!is_canonical(&other, &structure));
+        let stopped = find_canonical(&other, &structure, 1000, || false).unwrap_err();
+        assert_eq!(stopped, NotCanonical::NotFound { tried: 1 });
     }
 }

@@ -94,6 +94,12 @@ impl Embedding {
         &self.planes
     }
 
+    /// The truncating planes of the neighbour across a face of a tetrahedron of the domain, where the two meet at this face.
+    pub fn planes_across(&self, tetrahedron: u32, face: u8) -> [Vector; 4] {
+        let (here, face) = (tetrahedron as usize, usize::from(face));
+        self.planes[self.neighbours[here][face] as usize].map(|plane| apply(&self.across[here][face], plane))
+    }
+
     /// The faces of the domain that are glued, with the isometries: generators of the fundamental group.
     pub fn side_pairings(&self) -> &[SidePairing] {
         &self.pairings

@@ -7,7 +7,7 @@
 //! | [`Structure`], [`prove`] | the same with a proof, in enclosures ([`Enclosure`]) |
 //! | [`find_by_retriangulating`] | the same for a manifold, by triangulations of it that have one |
 //! | [`NoMetric`], [`Obstruction`] | why there is none, with a proof where there is one |
-//! | [`find_canonical`], [`tilt_sums`] | the triangulation that a manifold has by its geometry alone |
+//! | [`find_canonical`], [`is_canonical`], [`tilt_sums`] | the triangulation that a manifold has by its geometry alone |
 //! | [`Embedding`], [`minkowski`] | fundamental domain and universal cover in hyperbolic space |
 //!
 //! Source: Yin 2010, sections 4.3 and 4.4. Theorems and proofs: `docs/theory/hyperbolic.md`; for users:
@@ -21,6 +21,7 @@ mod enclosure;
 mod equations;
 pub mod minkowski;
 mod obstruction;
+mod program;
 mod proof;
 mod refusal;
 mod retriangulate;
@@ -30,7 +31,7 @@ pub(crate) mod testing;
 mod tetrahedron;
 mod volume;
 
-pub use canonical::{Canonical, NotCanonical, find_canonical, tilt_sums};
+pub use canonical::{Canonical, NotCanonical, find_canonical, is_canonical, tilt_sums};
 pub use embedding::{Embedding, Patches, Piece, SidePairing};
 pub use enclosure::{Enclosure, Real};
 pub use obstruction::Obstruction;

@@ -118,7 +118,8 @@ enum End {
 
 /// What is said when lengths grow without bound.
 fn escape(skeleton: &Skeleton, lengths: &[f64]) -> NoMetric {
-    NoMetric::obstructed(skeleton, lengths).unwrap_or_else(|| {
+    let searched = || Obstruction::search(skeleton).map(|obstruction| NoMetric::NoAngles { obstruction });
+    NoMetric::obstructed(skeleton, lengths).or_else(searched).unwrap_or_else(|| {
         let longest = |a: &usize, b: &usize| lengths[*a].total_cmp(&lengths[*b]);
         NoMetric::Escapes { edge: (0..lengths.len()).max_by(longest).unwrap_or(0), length: largest(lengths) }
     })

@@ -106,3 +106,15 @@ pub(super) fn angles(cosh: &[Jet; 6], discriminant: Jet) -> [Jet; 6] {
         Jet { value, slopes: [0, 1, 2, 3, 4, 5].map(slope) }
     })
 }
+
+/// The tilts of the faces, for a positive discriminant: the rows of the inverse of the Gram matrix are the inward normals of
+/// the faces as products with the four vertices, and their sums the products with the covector that is 1 at each.
+pub(super) fn tilts(cosh: [Ball; 6]) -> [Ball; 4] {
+    let cosh = cosh.map(Jet::constant);
+    let (matrix, determinant) = (gram(&cosh), -discriminant(&cosh).value);
+    let entry = |row: usize, column: usize| cofactor(&matrix, row, column).value * determinant.inverse();
+    [0, 1, 2, 3].map(|face| {
+        let sum = (0..4).fold(Ball::ZERO, |sum, column| sum + entry(face, column));
+        sum * entry(face, face).sqrt().inverse()
+    })
+}

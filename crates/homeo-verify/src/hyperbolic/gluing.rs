@@ -48,6 +48,14 @@ impl Gluing {
         self.to.len() / 4
     }
 
+    /// All faces, tetrahedron by tetrahedron, each with the one it is glued to.
+    pub(super) fn faces(&self) -> impl Iterator<Item = ((usize, usize), (usize, usize))> {
+        self.to.iter().enumerate().map(|(number, &(there, images))| {
+            let face = number % 4;
+            ((number / 4, face), (there, images[face]))
+        })
+    }
+
     /// Rule Y3: tetrahedra can be turned so that each gluing changes the orientation of its face.
     pub(super) fn check_orientation(&self) -> Checked {
         let mut turned = vec![None; self.count()];

@@ -4,7 +4,7 @@ use std::io::{self, Seek, Write};
 
 use homeo_core::mesh::VertexId;
 use homeo_core::planar::{PlanarDomain, Point2};
-use homeo_manifold::hyperbolic::Structure;
+use homeo_manifold::hyperbolic::{Structure, is_canonical};
 use homeo_manifold::{Skeleton, Triangulation};
 use serde_json::json;
 use sha2::{Digest, Sha256};
@@ -112,7 +112,8 @@ pub fn write_harmonic(map: &HarmonicMap, provenance: &Provenance, out: &mut (imp
     archive.finish()
 }
 
-/// Writes a hyperbolic structure with what its certificate needs. The same structure gives the same bytes.
+/// Writes a hyperbolic structure with what its certificate needs. The same structure gives the same bytes. If the triangulation
+/// is proved to be the canonical decomposition of the manifold, the file claims this too.
 ///
 /// # Errors
 /// When `out` cannot be written, and for a triangulation with a face that is not glued, or with another number of edges than
@@ -145,7 +146,7 @@ pub fn write_hyperbolic(
         "version": 1,
         "kind": "hyperbolic",
         "dimension": 3,
-        "target": "geodesic-boundary",
+        "target": if is_canonical(triangulation, structure) { "canonical-decomposition" } else { "geodesic-boundary" },
         "centre": null,
         "source": {
             "name": provenance.source_name,
