@@ -11,7 +11,7 @@
 mod lattice;
 
 use homeo_core::mesh::TetrahedronComplex;
-use homeo_manifold::hyperbolic::find_by_retriangulating;
+use homeo_manifold::hyperbolic::{find_by_retriangulating, find_canonical};
 use homeo_manifold::simplify::{Simplifier, coned, without_inner_vertices};
 use homeo_manifold::{Homology, Triangulation, signature};
 use lattice::Place;
@@ -20,12 +20,30 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!(
-        "| tunnels | tetrahedra | coned | collapsed | simplified | H1 | signature | volume | tried | collapse s | all s |"
+        "| tunnels | tetrahedra | coned | collapsed | simplified | H1 | volume | tried | canonical | collapse s | all s |"
     );
-    println!("|---|---:|---:|---:|---:|---|---|---|---:|---:|---:|");
+    println!("|---|---:|---:|---:|---:|---|---|---:|---|---:|---:|");
     print_row("knotted Y", &lattice::knotted_y())?;
-    print_row("knotted X", &lattice::knotted_x())
+    print_row("knotted X", &lattice::knotted_x())?;
+    for (arms, fingers) in ENTANGLED {
+        let word: Vec<String> = fingers.iter().map(|(from, to)| format!("{from}{to}")).collect();
+        print_row(&format!("{arms} arms {}", word.join(" ")), &lattice::entangled(*arms, fingers))?;
+    }
+    Ok(())
 }
+
+/// Arms in a row, and which of them have a finger round which.
+const ENTANGLED: &[(i32, &[(i32, i32)])] = &[
+    (3, &[(0, 1), (1, 2), (2, 0)]),
+    (3, &[(0, 2), (2, 1), (1, 0)]),
+    (3, &[(1, 2), (0, 1), (2, 0)]),
+    (3, &[(0, 1), (1, 2), (2, 0), (0, 1)]),
+    (3, &[(0, 1), (1, 2), (2, 1), (1, 0)]),
+    (3, &[(0, 1), (1, 2), (2, 0), (0, 2), (2, 1), (1, 0)]),
+    (4, &[(0, 1), (1, 2), (2, 3), (3, 0)]),
+    (4, &[(0, 2), (1, 3), (2, 0), (3, 1)]),
+    (5, &[(0, 1), (1, 2), (2, 3), (3, 4), (4, 0)]),
+];
 
 fn print_row(name: &str, paths: &[Vec<Place>]) -> Result<(), Box<dyn Error>> {
     let (vertices, cells) = lattice::tunnelled(paths);
@@ -42,16 +60,18 @@ fn print_row(name: &str, paths: &[Vec<Place>]) -> Result<(), Box<dyn Error>> {
     simplifier.run(300);
     let small = simplifier.best();
     let homology = Homology::new(small);
-    let (volume, tried) = match find_by_retriangulating(small, 1, 300, || true) {
-        Ok(found) => (format!("{:.10}", found.structure.volume().middle()), found.tried),
-        Err(refusal) => (refusal.to_string(), 0),
+    let (volume, tried, canonical) = match find_by_retriangulating(small, 1, 300, || true) {
+        Ok(found) => {
+            let canonical = find_canonical(&found.triangulation, &found.structure, 1000, || true);
+            let name = canonical
+                .map_or_else(|reason| reason.to_string(), |canonical| format!("`{}`", signature(&canonical.triangulation)));
+            (format!("{:.10}", found.structure.volume().middle()), found.tried, name)
+        }
+        Err(refusal) => (refusal.to_string(), 0, String::new()),
     };
     let counts = format!("{} | {} | {} | {}", mesh.len(), closed.len(), coarse.len(), small.len());
     let all = start.elapsed().as_secs_f64();
-    println!(
-        "| {name} | {counts} | {homology} | {} | {volume} | {tried} | {collapsed:.2} | {all:.2} |",
-        signature(small)
-    );
+    println!("| {name} | {counts} | {homology} | {volume} | {tried} | {canonical} | {collapsed:.2} | {all:.2} |");
     Ok(())
 }
 

@@ -4,7 +4,7 @@
 mod lattice;
 
 use homeo_core::mesh::TetrahedronComplex;
-use homeo_manifold::hyperbolic::{NoMetric, find_by_retriangulating};
+use homeo_manifold::hyperbolic::{NoMetric, find_by_retriangulating, find_canonical};
 use homeo_manifold::simplify::{Simplifier, coned, without_inner_vertices};
 use homeo_manifold::{Homology, Triangulation, from_signature, signature};
 use lattice::Place;
@@ -73,4 +73,19 @@ fn four_entangled_arms_have_one_volume_in_all_meshes() {
     };
     let volumes = [volume([0, 1, 2], 1), volume([0, 1, 2], 2), volume([1, 0, 2], 3)];
     assert!(volumes.iter().all(|volume| (volume - volumes[0]).abs() < 1e-8), "{volumes:?}");
+}
+
+#[test]
+fn arms_in_a_row_have_one_name_in_all_meshes() {
+    let paths = lattice::entangled(3, &[(0, 1), (1, 2), (2, 0)]);
+    let name = |axes, seed| {
+        let small = truncated(&mesh(&swapped(&paths, axes), |number, count| number * 104_729 % count), seed);
+        let found = find_by_retriangulating(&small, seed, 300, || true).unwrap();
+        let canonical = find_canonical(&found.triangulation, &found.structure, 1000, || true).unwrap();
+        (signature(&canonical.triangulation), canonical.structure.volume().middle())
+    };
+    let (first, volume) = name([0, 1, 2], 1);
+    // In the census, and not the tripus.
+    assert!((volume - 8.375_485_953_1).abs() < 1e-8, "{volume}");
+    assert_eq!(first, name([1, 0, 2], 2).0);
 }

@@ -33,8 +33,8 @@ pub struct Canonical {
 #[allow(missing_docs)] // the messages say what the fields are
 pub enum NotCanonical {
     #[error(
-        "the tilts at face {face} of tetrahedron {tetrahedron} add up to zero as far as doubles tell ({low:.1e} to {high:.1e}), \
-         and to less at the others: most likely the canonical cells are no tetrahedra but larger ones"
+        "the tilts at face {face} of tetrahedron {tetrahedron} add up to 0 as far as doubles tell ({low:.0e} to {high:.0e}): most \
+         likely the canonical cells are larger than tetrahedra"
     )]
     Undecided { tetrahedron: u32, face: u8, low: f64, high: f64 },
     #[error("none of {tried} triangulations near this one is canonical; try more")]

@@ -1,4 +1,4 @@
-//! Moves that change few tetrahedra and not the manifold: 2-3, 3-2 and 2-0.
+//! Moves that change few tetrahedra and not the manifold: 2-3, 3-2, 4-4, 2-0 and 2-1.
 
 use super::editor::{Editor, Joined, corner_at};
 use crate::permutation::Permutation;
@@ -128,10 +128,34 @@ pub(super) fn two_to_zero(editor: &mut Editor, edge: EdgeCorner) -> bool {
     true
 }
 
+/// Takes away an edge that only one tetrahedron has, with this tetrahedron, if that is no change of the manifold; whether it did.
+///
+/// The tetrahedron is glued to itself round the edge. A move 2-3 at a face that has one end of the edge gives the edge a second
+/// tetrahedron, and a move 2-0 flattens the two; if it may not be made, the first move is undone.
+pub(super) fn two_to_one(editor: &mut Editor, edge: EdgeCorner) -> bool {
+    if editor.ring(edge, 1).is_none() {
+        return false;
+    }
+    let [start, end, ..] = edge.corners.images();
+    for (kept, off) in [(start, end), (end, start)] {
+        let Some(new) = two_to_three(editor, edge.tetrahedron, off) else { continue };
+        // The edge goes from corner 0 of the new ones to the corner that `kept` is now: see there.
+        let place = (0..4).filter(|&corner| corner != off).position(|corner| corner == kept).unwrap_or(0);
+        if two_to_zero(editor, corner_at(new[(place + 1) % 3], 0, 3)) {
+            return true;
+        }
+        let is_undone = three_to_two(editor, corner_at(new[0], 0, 1));
+        debug_assert!(is_undone, "the new edge has three tetrahedra");
+        // It has other names now.
+        return false;
+    }
+    false
+}
+
 /// The move with two tetrahedra more or fewer that an edge of a tetrahedron allows, if any reduces their number.
 pub(super) fn reduce_at(editor: &mut Editor, tetrahedron: u32, a: u8, b: u8) -> bool {
     let edge = corner_at(tetrahedron, a, b);
-    two_to_zero(editor, edge) || three_to_two(editor, edge)
+    two_to_zero(editor, edge) || three_to_two(editor, edge) || two_to_one(editor, edge)
 }
 
 /// The permutation with these images.

@@ -83,6 +83,38 @@ pub fn knotted_y() -> Vec<Vec<Place>> {
     paths
 }
 
+/// Arms that rise from a bar, in a row, and hold one another: for each pair the first arm has a finger that goes round the second and
+/// back. Fingers leave their arms low and hold others high, each above the one before, so that they cannot be pulled off one
+/// after the other; each has a lane of its own in front of the arms.
+#[allow(dead_code, reason = "not in every program that has this module")]
+pub fn entangled(arms: i32, fingers: &[(i32, i32)]) -> Vec<Vec<Place>> {
+    let at = |arm: i32| 10 * arm;
+    let mut paths: Vec<Vec<Place>> = (0..arms).map(|arm| vec![[at(arm), 0, 0]]).collect();
+    let count = fingers.len() as i32;
+    for (number, &(from, to)) in (0..).zip(fingers) {
+        let (ahead, x, end) = ((to - from).signum(), at(from), at(to));
+        let (low, high, near) = (2 + 2 * number, 3 + 2 * count + number, -2 - 2 * number);
+        let far = near - 1;
+        paths[from as usize].extend([
+            [x, 0, low],
+            [x, far, low],
+            [x + 2 * ahead, far, low],
+            [x + 2 * ahead, far, high],
+            [end + ahead, far, high],
+            [end + ahead, 1, high],
+            [end - ahead, 1, high],
+            [end - ahead, near, high],
+            [x + 3 * ahead, near, high],
+            [x + 3 * ahead, near, low + 1],
+            [x, near, low + 1],
+            [x, 0, low + 1],
+        ]);
+    }
+    paths.iter_mut().zip(0..).for_each(|(path, arm)| path.push([at(arm), 0, 4 + 3 * count]));
+    paths.push(vec![[at(0), 0, 0], [at(arms - 1), 0, 0]]);
+    paths
+}
+
 /// Four arms that rise from a common point, each with a finger round the next.
 pub fn knotted_x() -> Vec<Vec<Place>> {
     let mut paths: Vec<_> = (0..4).map(|corner| arm(corner, (corner + 1) % 4)).collect();
