@@ -13,6 +13,7 @@ use crate::rings::Rings;
 use crate::verdict::{Checked, Obstacle, Stop, check, refuted};
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, VecDeque};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// So many boxes of one chart are bounded at most: some ten seconds of work for a few hundred vertices.
 const BOXES_PER_CHART: u32 = 300_000;
@@ -131,9 +132,22 @@ pub(crate) fn check_determinant(
             return fold(*t, chart, at);
         }
     }
-    let mut boxes = 0;
-    for chunk in charts.chunks(CHUNK) {
-        for (outcome, (t, chart)) in in_parallel(chunk, |(_, chart)| bound(step, chart)).into_iter().zip(chunk) {
+    let (mut boxes, failed) = (0, AtomicUsize::new(usize::MAX));
+    // The first chart that fails is the answer: none after one that has failed matters.
+    let bound_unless_failed = |&number: &usize| {
+        if number > failed.load(Relaxed) {
+            return Outcome::Undecided([0.0; 2]);
+        }
+        let outcome = bound(step, &charts[number].1);
+        if !matches!(outcome, Outcome::Positive(_)) {
+            failed.fetch_min(number, Relaxed);
+        }
+        outcome
+    };
+    let numbers: Vec<usize> = (0..charts.len()).collect();
+    for chunk in numbers.chunks(CHUNK) {
+        for (outcome, &number) in in_parallel(chunk, bound_unless_failed).into_iter().zip(chunk) {
+            let (t, chart) = &charts[number];
             match outcome {
                 Outcome::Positive(count) => boxes += count,
                 Outcome::Negative(at) => return fold(*t, chart, at),
@@ -192,11 +206,11 @@ fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> 
     let threads = std::thread::available_parallelism().map_or(1, |count| count.get());
     let size = items.len().div_ceil(8 * threads).max(1);
     let parts: Vec<&[T]> = items.chunks(size).collect();
-    let next = std::sync::atomic::AtomicUsize::new(0);
+    let next = AtomicUsize::new(0);
     let run = || {
         let mut done = Vec::new();
         while let Some((number, part)) = {
-            let number = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            let number = next.fetch_add(1, Relaxed);
             parts.get(number).map(|part| (number, part))
         } {
             done.push((number, part.iter().map(&work).collect::<Vec<R>>()));
