@@ -13,7 +13,8 @@ use support::plane::{self, Point};
 use support::random::Random;
 use support::write::{npy, sha256, zip};
 
-const MUTATIONS: usize = 1050;
+/// Of the kite, and of the annulus, whose proofs take longer.
+const MUTATIONS: [usize; 2] = [1800, 300];
 
 /// The arrays of a map, free to be wrong.
 #[derive(Clone)]
@@ -192,9 +193,9 @@ fn degrees_are_from_one_to_eight() {
 #[test]
 fn every_mutation_is_rejected_or_harmless() {
     let (mut counts, mut seen) = (BTreeMap::<String, usize>::new(), 0);
-    for (name, valid) in [("kite", kite()), ("annulus", annulus())] {
+    for ((name, valid), count) in [("kite", kite()), ("annulus", annulus())].into_iter().zip(MUTATIONS) {
         let mut random = Random(5);
-        for _ in 0..MUTATIONS {
+        for _ in 0..count {
             let mut mutant = valid.clone();
             let what = mutate(&mut mutant, &mut random);
             let outcome = match mutant.verdict() {
@@ -217,9 +218,10 @@ fn every_mutation_is_rejected_or_harmless() {
         let found = counts.get(rule).copied().unwrap_or(0);
         assert!(found >= 20, "only {found} mutations are {rule}: the test tests little");
     }
-    assert_eq!(counts.values().sum::<usize>(), 2 * MUTATIONS);
+    let all: usize = counts.values().sum();
+    assert_eq!(all, 2100);
     let harmless = counts.get("harmless").copied().unwrap_or(0);
-    assert!((100..MUTATIONS).contains(&harmless), "{harmless} are harmless");
+    assert!((100..3 * all / 4).contains(&harmless), "{harmless} are harmless");
     let by_folds = counts["refuted by K3"];
     assert!(2 * seen > by_folds, "the oracle sees only {seen} of {by_folds} folds");
 }
