@@ -556,7 +556,7 @@ pub struct ReportArgs {
   homeo warp testdata/images/checker.png --from testdata/polygons/square.json --to testdata/polygons/arrow.json -o warped.png
   homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo
   homeo warp testdata/images/checker.png --pair testdata/polygons/hole_turned.json --method mean-value -o smooth.png
-  homeo warp testdata/images/checker.png --from testdata/polygons/square.json --to testdata/polygons/arrow.json --method complex --degree 5 -o one_step.png
+  homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json --method complex --degree 4 -o one_step.csv
   homeo warp testdata/meshes/spot.mesh --from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj -o twisted.vtu
 
 Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is

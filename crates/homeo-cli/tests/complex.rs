@@ -17,7 +17,7 @@ fn folder(corner: u32) -> Folder {
 
 #[test]
 fn maps_are_certified_and_checked_again() {
-    let folder = folder(64);
+    let folder = folder(80);
     let line = format!("warp testdata/images/checker.png {PAIR} --map step.homeo");
     let report = folder.line(&format!("{line} -o a.png --threads 1 --json")).expect(0).json();
     assert_eq!((&report["certificate"]["holds"], &report["target"]), (&true.into(), &"polygon".into()));
@@ -38,7 +38,7 @@ fn maps_are_certified_and_checked_again() {
 
 #[test]
 fn points_go_there_and_back() {
-    let folder = folder(64);
+    let folder = folder(80);
     folder.line(&format!("warp points.csv {PAIR} --degree 3 -o moved.csv --map step.homeo")).expect(0);
     folder.line("eval step.homeo --points points.csv -o again.csv").expect(0);
     assert_eq!(folder.text("moved.csv"), folder.text("again.csv"));
@@ -55,14 +55,17 @@ fn points_go_there_and_back() {
 fn holes_are_kept() {
     let folder = Folder::new();
     let hole = |x: f64| format!("[[{x}, 1], [{x}, 2], [{}, 1]]", x + 1.0);
-    let domain = |x: f64| format!("{{\"outer\": [[0,0],[8,0],[8,4],[0,4]], \"holes\": [{}, {}]}}", hole(x), hole(x + 3.0));
+    let domain =
+        |x: f64| format!("{{\"outer\": [[0,0],[8,0],[8,4],[0,4]], \"holes\": [{}, {}]}}", hole(x), hole(x + 3.0));
     let one = |x: f64| format!("{{\"outer\": [[0,0],[8,0],[8,4],[0,4]], \"inner\": {}}}", hole(x));
     folder.write("a.json", &domain(1.0)).write("b.json", &domain(1.25));
     folder.write("c.json", &one(1.0)).write("d.json", &one(1.25)).write("points.csv", "x,y\n0.5,0.5\n");
-    let line = "warp points.csv --from c.json --to d.json --method complex --degree 2 -o out.csv --map ring.homeo --json";
+    let line =
+        "warp points.csv --from c.json --to d.json --method complex --degree 2 -o out.csv --map ring.homeo --json";
     assert_eq!(folder.line(line).expect(0).json()["target"], "annulus");
     folder.line("verify ring.homeo --source c.json").expect(0);
-    let line = "warp points.csv --from a.json --to b.json --method complex --degree 2 -o out.csv --map two.homeo --json";
+    let line =
+        "warp points.csv --from a.json --to b.json --method complex --degree 2 -o out.csv --map two.homeo --json";
     assert_eq!(folder.line(line).expect(0).json()["target"], "domain");
     folder.line("verify two.homeo --source a.json").expect(0);
 }
@@ -81,7 +84,7 @@ fn folds_are_told_and_nothing_is_written() {
 
 #[test]
 fn what_makes_no_sense_is_refused() {
-    let folder = folder(64);
+    let folder = folder(80);
     folder.write("bowtie.json", "[[8, 8], [120, 120], [120, 8], [8, 120]]");
     folder.write("three.json", "[[8, 8], [120, 120], [120, 8]]");
     for (degree, exit) in [("0", 2), ("9", 2), ("x", 2), ("1", 0), ("8", 0)] {
@@ -106,7 +109,7 @@ fn what_makes_no_sense_is_refused() {
 /// A file whose control values were changed is refused by the command, too.
 #[test]
 fn damaged_files_are_refused() {
-    let folder = folder(64);
+    let folder = folder(80);
     folder.line(&format!("warp points.csv {PAIR} -o moved.csv --map step.homeo")).expect(0);
     let bytes = folder.read("step.homeo");
     std::fs::write(folder.path("cut.homeo"), &bytes[..bytes.len() / 2]).unwrap();
