@@ -20,7 +20,7 @@ pub fn edges(sizes: &[u32]) -> Vec<[usize; 2]> {
 /// A point anywhere, or beside an edge, near its first vertex often.
 pub fn sample(random: &mut Random, k: usize, edges: &[[usize; 2]], points: &[Point]) -> Point {
     let [a, b] = edges[random.below(edges.len())];
-    let share = if k % 3 == 0 { random.unit() } else { 10f64.powf(-4.0 * random.unit()) };
+    let share = if k.is_multiple_of(3) { random.unit() } else { 10f64.powf(-4.0 * random.unit()) };
     let off = 10f64.powf(-3.0 * random.unit());
     match k % 2 {
         0 => [0, 1].map(|_| 3.0 * random.unit() - 1.5),
