@@ -556,6 +556,7 @@ pub struct ReportArgs {
   homeo warp testdata/images/checker.png --from testdata/polygons/square.json --to testdata/polygons/arrow.json -o warped.png
   homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo
   homeo warp testdata/images/checker.png --pair testdata/polygons/hole_turned.json --method mean-value -o smooth.png
+  homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json --method complex --degree 4 -o one_step.csv
   homeo warp testdata/meshes/spot.mesh --from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj -o twisted.vtu
 
 Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is
@@ -584,6 +585,9 @@ pub struct WarpArgs {
     /// How the inside follows [default: harmonic with polygons, mean-value with cages]
     #[arg(long, value_enum, value_name = "METHOD", conflicts_with = "landmarks")]
     pub method: Option<MethodName>,
+    /// Complex maps: degree of the speeds along the edges, from 1 (linear) to 8 [default: 4]
+    #[arg(long, value_name = "N", value_parser = degree)]
+    pub degree: Option<usize>,
     /// What samples a picture: the processor, or a graphics processor (8 bits); maps are made and proved by the first
     #[cfg(feature = "gpu")]
     #[arg(long, value_enum, value_name = "DEVICE", default_value_t = DeviceName::Cpu)]
@@ -737,6 +741,8 @@ pub enum MethodName {
     Harmonic,
     /// Smooth: by mean value coordinates from one polygon or cage to the next on the way, as many as it takes
     MeanValue,
+    /// Smooth, in one step, for polygons: mean value coordinates with speeds along the edges; exists for fewer pairs
+    Complex,
 }
 
 /// How a polygon becomes another.
@@ -835,6 +841,10 @@ fn positive_seconds(text: &str) -> Result<f64, String> {
 
 fn at_least_one(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|&n| n >= 1).ok_or_else(|| "a whole number from 1 on is needed".to_owned())
+}
+
+fn degree(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|n| (1..=8).contains(n)).ok_or_else(|| "a whole number from 1 to 8 is needed".to_owned())
 }
 
 fn steps(text: &str) -> Result<usize, String> {

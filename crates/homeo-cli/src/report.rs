@@ -53,6 +53,7 @@ pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Re
             let size = match map {
                 PlanarMap::Harmonic(map) => json!({"triangles": map.source_half().parts().triangles.len()}),
                 PlanarMap::Composite(map) => json!({"steps": map.step_count()}),
+                PlanarMap::Complex(map) => json!({"degree": map.speeds().degree()}),
             };
             (title, size)
         }

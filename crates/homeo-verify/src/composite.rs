@@ -13,6 +13,7 @@ use crate::rings::Rings;
 use crate::verdict::{Checked, Obstacle, Stop, check, refuted};
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, VecDeque};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// So many boxes of one chart are bounded at most: some ten seconds of work for a few hundred vertices.
 const BOXES_PER_CHART: u32 = 300_000;
@@ -33,7 +34,7 @@ pub(crate) fn check_composite(data: &CompositeData) -> Checked<Vec<(&'static str
     for (number, tiling) in data.tilings.iter().enumerate() {
         check(is_finite(&tiling.added), "C1", &format!("an added point of step {number} is not finite"), &[], &[])?;
         let corners: Vec<Point> = data.stages[number].iter().chain(&tiling.added).copied().collect();
-        check_tiling(number, &corners, &tiling.triangles, &boundary)?;
+        check_tiling("C2", &format!("step {number}"), &corners, &tiling.triangles, &boundary)?;
     }
     let mut boxes = 0;
     for number in 0..data.tilings.len() {
@@ -48,11 +49,17 @@ pub(crate) fn check_composite(data: &CompositeData) -> Checked<Vec<(&'static str
     ])
 }
 
-/// Rule C2: all triangles are counter-clockwise, no two use an edge alike, and those used once only are the boundary's.
-fn check_tiling(step: usize, corners: &[Point], triangles: &[u32], boundary: &[[u32; 2]]) -> Checked {
+/// Rule C2, and K2: all triangles are counter-clockwise, no two use an edge alike, and those used once only are the boundary's.
+pub(crate) fn check_tiling(
+    name: &'static str,
+    of: &str,
+    corners: &[Point],
+    triangles: &[u32],
+    boundary: &[[u32; 2]],
+) -> Checked {
     let mut edges = BTreeSet::new();
     for (t, triangle) in triangles.as_chunks::<3>().0.iter().enumerate() {
-        let rule = |holds: bool, what: &str| check(holds, "C2", &format!("{what} (step {step})"), &[t], triangle);
+        let rule = |holds: bool, what: &str| check(holds, name, &format!("{what} ({of})"), &[t], triangle);
         let exist = triangle.iter().all(|&v| (v as usize) < corners.len());
         rule(exist, "a triangle has a corner that does not exist")?;
         let [a, b, c] = triangle.map(|v| corners[v as usize]);
@@ -64,11 +71,11 @@ fn check_tiling(step: usize, corners: &[Point], triangles: &[u32], boundary: &[[
     let mut expected: BTreeSet<_> = boundary.iter().copied().collect();
     for &[a, b] in &edges {
         let is_expected = expected.remove(&[a, b]);
-        let message = format!("an edge is neither between two triangles nor on the boundary, or both (step {step})");
-        check(edges.contains(&[b, a]) != is_expected, "C2", &message, &[], &[a, b])?;
+        let message = format!("an edge is neither between two triangles nor on the boundary, or both ({of})");
+        check(edges.contains(&[b, a]) != is_expected, name, &message, &[], &[a, b])?;
     }
-    let message = format!("an edge of the domain belongs to no triangle (step {step})");
-    check(expected.is_empty(), "C2", &message, &[], expected.first().map_or(&[], |edge| &edge[..]))
+    let message = format!("an edge of the domain belongs to no triangle ({of})");
+    check(expected.is_empty(), name, &message, &[], expected.first().map_or(&[], |edge| &edge[..]))
 }
 
 /// What is known of a chart: how many boxes it took, or where it fails or is undecided.
@@ -80,42 +87,92 @@ enum Outcome {
 
 /// Rule C3: the determinant is positive in all charts. Counts the boxes.
 fn check_step(data: &CompositeData, number: usize, boundary: &[[u32; 2]]) -> Checked<u64> {
-    let flat = |points: &[Point]| points.iter().map(|&[x, y, _]| [x, y]).collect::<Vec<_>>();
     let tiling = &data.tilings[number];
     let [points, images, added] = [&data.stages[number], &data.stages[number + 1], &tiling.added].map(|p| flat(p));
-    let (mut next, mut previous) = (vec![0; points.len()], vec![0; points.len()]);
+    let [next, previous] = neighbours(boundary);
+    let step = Step { points: &points, images: &images, added: &added, next: &next, previous: &previous, speeds: None };
+    let map = format!("the mean value map of step {number}");
+    check_determinant(&step, &tiling.triangles, "C3", &map, "more domains between source and target")
+}
+
+/// Points of the plane without their third coordinates.
+pub(crate) fn flat(points: &[Point]) -> Vec<[f64; 2]> {
+    points.iter().map(|&[x, y, _]| [x, y]).collect()
+}
+
+/// The next and the previous vertex of each, by all edges.
+pub(crate) fn neighbours(boundary: &[[u32; 2]]) -> [Vec<u32>; 2] {
+    let (mut next, mut previous) = (vec![0; boundary.len()], vec![0; boundary.len()]);
     boundary.iter().for_each(|&[a, b]| (next[a as usize], previous[b as usize]) = (b, a));
-    let step = Step { points: &points, images: &images, added: &added, next: &next, previous: &previous };
-    let triangles = tiling.triangles.as_chunks::<3>().0;
+    [next, previous]
+}
+
+/// Rules C3 and K3: the determinant of a map, which is named in messages, is positive in all charts. Counts the boxes.
+pub(crate) fn check_determinant(
+    step: &Step,
+    triangles: &[u32],
+    rule: &'static str,
+    map: &str,
+    remedy: &str,
+) -> Checked<u64> {
+    let triangles = triangles.as_chunks::<3>().0;
     let charts: Vec<(usize, Chart)> = triangles
         .iter()
         .enumerate()
         .flat_map(|(t, &corners)| step.charts(corners).into_iter().map(move |c| (t, c)))
         .collect();
-    let mut boxes = 0;
-    for chunk in charts.chunks(CHUNK) {
-        for (outcome, (t, chart)) in in_parallel(chunk, |(_, chart)| bound(&step, chart)).into_iter().zip(chunk) {
-            let place = |at: [f64; 2]| chart.place(step.corner(chart.apex()), at);
+    let place = |chart: &Chart, at: [f64; 2]| chart.place(step.corner(chart.apex()), at);
+    let fold = |t: usize, chart: &Chart, at: [f64; 2]| {
+        let message = format!("{map} folds round the point {:?}", place(chart, at));
+        Err(refuted(rule, message, &[t], &triangles[t]))
+    };
+    // What folds a lot shows at once; else all other charts would be bounded first.
+    for (t, chart) in &charts {
+        if let Some(at) = sampled_fold(step, chart) {
+            return fold(*t, chart, at);
+        }
+    }
+    let (mut boxes, failed) = (0, AtomicUsize::new(usize::MAX));
+    // The first chart that fails is the answer: none after one that has failed matters.
+    let bound_unless_failed = |&number: &usize| {
+        if number > failed.load(Relaxed) {
+            return Outcome::Undecided([0.0; 2]);
+        }
+        let outcome = bound(step, &charts[number].1);
+        if !matches!(outcome, Outcome::Positive(_)) {
+            failed.fetch_min(number, Relaxed);
+        }
+        outcome
+    };
+    let numbers: Vec<usize> = (0..charts.len()).collect();
+    for chunk in numbers.chunks(CHUNK) {
+        for (outcome, &number) in in_parallel(chunk, bound_unless_failed).into_iter().zip(chunk) {
+            let (t, chart) = &charts[number];
             match outcome {
                 Outcome::Positive(count) => boxes += count,
-                Outcome::Negative(at) => {
-                    let message = format!("the mean value map of step {number} folds round the point {:?}", place(at));
-                    return Err(refuted("C3", message, &[*t], &triangles[*t]));
-                }
+                Outcome::Negative(at) => return fold(*t, chart, at),
                 Outcome::Undecided(at) => {
                     return Err(Stop::Undecided(Obstacle {
                         message: format!(
-                            "rule C3: the sign of the Jacobian determinant of step {number} near {:?} is not known after \
+                            "rule {rule}: the sign of the Jacobian determinant of {map} near {:?} is not known after \
                              {BOXES_PER_CHART} boxes",
-                            place(at)
+                            place(chart, at)
                         ),
-                        remedy: "more domains between source and target".to_owned(),
+                        remedy: remedy.to_owned(),
                     }));
                 }
             }
         }
     }
     Ok(boxes)
+}
+
+/// A point inside a chart at which the determinant is enclosed and negative, among a few.
+fn sampled_fold(step: &Step, chart: &Chart) -> Option<[f64; 2]> {
+    let mut frame = Frame::new(step, chart);
+    let shares = [0.01, 0.25, 0.5, 0.75, 0.99];
+    let mut points = shares.iter().flat_map(|&s| shares.map(|lambda| [s, lambda]));
+    points.find(|&[s, lambda]| frame.enclose([s; 2], [lambda; 2]).determinant.is_negative())
 }
 
 /// Bounds the determinant in a chart, halving boxes until its sign is known.
@@ -149,11 +206,11 @@ fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> 
     let threads = std::thread::available_parallelism().map_or(1, |count| count.get());
     let size = items.len().div_ceil(8 * threads).max(1);
     let parts: Vec<&[T]> = items.chunks(size).collect();
-    let next = std::sync::atomic::AtomicUsize::new(0);
+    let next = AtomicUsize::new(0);
     let run = || {
         let mut done = Vec::new();
         while let Some((number, part)) = {
-            let number = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            let number = next.fetch_add(1, Relaxed);
             parts.get(number).map(|part| (number, part))
         } {
             done.push((number, part.iter().map(&work).collect::<Vec<R>>()));

@@ -9,19 +9,21 @@
 //! 3. `source` (rules S, 8), `subdivision` (R), `foliation` (1-6, 8), `section` (7), `piecewise_linear` (P, 7);
 //! 4. `triangles`, `shell` (L1-L6, of `docs/theory/shells.md`);
 //! 5. `rings` (D), `harmonic` (H1-H5, of `docs/theory/polygons.md`);
-//! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3;
-//! 7. `hyperbolic` (Y1-Y8, of `docs/theory/hyperbolic.md`);
-//! 8. `bundle` (T1-T8, of `docs/theory/bundles.md`).
+//! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3 and K3;
+//! 7. `complex_barycentric` (K1-K3, of `docs/theory/complex.md`), `mean_value/speeds`: what speeds add;
+//! 8. `hyperbolic` (Y1-Y8, of `docs/theory/hyperbolic.md`);
+//! 9. `bundle` (T1-T8, of `docs/theory/bundles.md`).
 //!
 //! # Complexity
 //! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file. For
-//! shells also the number of pairs, of a source triangle and a prism, whose boxes meet. Composite mean value maps: for each
+//! shells also the number of pairs, of a source triangle and a prism, whose boxes meet. Composite mean value maps and complex maps: for each
 //! step some hundred to thousand boxes for each vertex, each of `O(N)`; on all processors.
 
 mod archive;
 mod ball;
 mod bundle;
 mod complex;
+mod complex_barycentric;
 mod composite;
 mod foliation;
 mod harmonic;
@@ -150,6 +152,7 @@ pub fn compare_polygon(bytes: &[u8], rings: &[Vec<[f64; 2]>]) -> Result<SourceMa
     let (ring_sizes, points) = match &map.data {
         MapData::Harmonic(data) => (&data.ring_sizes, &data.source_points),
         MapData::Composite(data) => (&data.ring_sizes, &data.stages[0]),
+        MapData::Complex(data) => (&data.ring_sizes, &data.domains[0]),
         _ => return different("is a mesh".to_owned()),
     };
     let sizes: Vec<usize> = rings.iter().map(Vec::len).collect();
@@ -163,6 +166,9 @@ pub fn compare_polygon(bytes: &[u8], rings: &[Vec<[f64; 2]>]) -> Result<SourceMa
         Some(v) => different(format!("has vertex {v} at {:?}", &points[v][..2])),
     }
 }
+
+/// What most maps between planar domains do on edges.
+const LINEAR: &str = "is linear on every edge";
 
 /// Applies every rule and puts the claim into words.
 fn check_map(map: &MapFile) -> Checked<Claim> {
@@ -178,6 +184,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::Shell => ("shell", "theorem on shells, rules L1-L6"),
         Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
         Kind::CompositeMeanValue => ("composite-mean-value", "theorem on composite mean value maps, rules D and C1-C3"),
+        Kind::ComplexBarycentric => ("complex-barycentric", "theorem on complex maps with speeds, rules D and K1-K3"),
         Kind::Hyperbolic if is_canonical => ("hyperbolic", "theorems on glued truncated tetrahedra and tilts, rules Y1-Y8"),
         Kind::Hyperbolic => ("hyperbolic", "theorem on glued truncated tetrahedra, rules Y1-Y7"),
         Kind::UnitTangentBundle => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T8"),
@@ -228,14 +235,17 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         }
     }
     let planar = match &map.data {
-        MapData::Harmonic(data) => Some((data.ring_sizes.len(), String::new())),
-        MapData::Composite(data) => Some((data.ring_sizes.len(), format!("in {} steps ", data.tilings.len()))),
+        MapData::Harmonic(data) => Some((data.ring_sizes.len(), String::new(), LINEAR)),
+        MapData::Composite(data) => Some((data.ring_sizes.len(), format!("in {} steps ", data.tilings.len()), LINEAR)),
+        MapData::Complex(data) => {
+            Some((data.ring_sizes.len(), String::new(), "runs along every edge at its stored speed"))
+        }
         _ => None,
     };
-    if let Some((rings, steps)) = planar {
+    if let Some((rings, steps, on_edges)) = planar {
         statement = format!(
             "The stored map is a homeomorphism {steps}from the domain of {vertices} vertices in {rings} ring(s) onto the \
-             {onto}; it is linear on every edge ({theorem})."
+             {onto}; it {on_edges} ({theorem})."
         );
         overlaps = "Nothing is said of how much it distorts.";
     }
@@ -271,6 +281,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
             }
             MapData::Hyperbolic(_) => "The claim is about the gluing in the file and the box round the stored numbers.",
             MapData::Composite(_) => "The claim is about the exact mean value maps of the polygons in the file.",
+            MapData::Complex(_) => "The claim is about the exact complex map of the polygons and speeds in the file.",
             _ => "The claim is about the complex with these cells and the exact rational map that the file defines.",
         },
         overlaps,
@@ -301,6 +312,9 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
     if let MapData::Composite(data) = &map.data {
         return composite::check_composite(data);
     }
+    if let MapData::Complex(data) = &map.data {
+        return complex_barycentric::check_complex(data);
+    }
     if let MapData::Hyperbolic(data) = &map.data {
         let is_canonical = map.manifest.target == Target::CanonicalDecomposition;
         return hyperbolic::check_hyperbolic(data, map.manifest.source.vertices, is_canonical);
@@ -329,7 +343,7 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
             checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
         }
         MapData::Shell(_) | MapData::Harmonic(_) | MapData::Composite(_) => {} // above
-        MapData::Hyperbolic(_) | MapData::Bundle(_) => {}                      // above
+        MapData::Complex(_) | MapData::Hyperbolic(_) | MapData::Bundle(_) => {} // above
     }
     Ok(checked)
 }

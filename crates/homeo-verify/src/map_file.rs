@@ -2,6 +2,7 @@
 
 use crate::archive::Archive;
 use crate::bundle::BundleData;
+use crate::complex_barycentric::ComplexData;
 use crate::manifest::{Kind, Manifest, Target};
 use crate::npy::{Array, F8, I1, I8, U4};
 use crate::number::Point;
@@ -33,6 +34,7 @@ pub(crate) enum MapData {
     Shell(ShellData),
     Harmonic(HarmonicData),
     Composite(CompositeData),
+    Complex(ComplexData),
     Hyperbolic(HyperbolicData),
     Bundle(BundleData),
 }
@@ -127,6 +129,13 @@ impl MapFile {
             all_taken(&archive)?;
             let positions = data.stages[0].clone();
             let data = MapData::Composite(data);
+            return Ok(MapFile { manifest, positions, cells: vec![], refinement: None, data });
+        }
+        if manifest.kind == Kind::ComplexBarycentric {
+            let data = ComplexData::read(&mut archive, &manifest)?;
+            all_taken(&archive)?;
+            let positions = data.domains[0].clone();
+            let data = MapData::Complex(data);
             return Ok(MapFile { manifest, positions, cells: vec![], refinement: None, data });
         }
         if manifest.kind == Kind::Hyperbolic {
@@ -248,7 +257,10 @@ impl FoliationData {
 }
 
 /// The vertices of a planar source and the sizes of its rings, when it is the one of the manifest.
-fn read_planar_source(archive: &mut Archive, manifest: &Manifest) -> Result<(Vec<Point>, Vec<u32>), Unreadable> {
+pub(crate) fn read_planar_source(
+    archive: &mut Archive,
+    manifest: &Manifest,
+) -> Result<(Vec<Point>, Vec<u32>), Unreadable> {
     let (points, rings) = (Array::take(archive, "source_points")?, Array::take(archive, "source_rings")?);
     let hash = source_hash([manifest.source.vertices, 2, manifest.source.cells], &[&points, &rings]);
     let (source_points, ring_sizes) = (points.read_points(None, 2)?, rings.read(U4, None, 1)?);

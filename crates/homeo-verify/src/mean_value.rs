@@ -8,13 +8,22 @@
 //!   `s` cancels;
 //! * if the chart touches an edge, its half tangent times `λ` is finite, and everything is multiplied by `λ`.
 //!
+//! Complex maps add a sum over edges to the numerator: `speeds`.
+//!
 //! `M` is any matrix: the nearer it is to the derivative, the narrower the enclosure. So it is found in doubles.
 
+mod fit;
+mod speeds;
+
+pub(crate) use speeds::{MOST_DEGREE, Speeds};
+
 use crate::ball::{Ball, Dual, Vector, cross, dot, length, vector};
+use fit::Fit;
+use speeds::Line;
 
 type Point2 = [f64; 2];
 
-/// A mean value map of a domain.
+/// A mean value map of a domain, or a complex map.
 pub(crate) struct Step<'a> {
     /// Vertices of the domain, ring after ring.
     pub(crate) points: &'a [Point2],
@@ -25,6 +34,8 @@ pub(crate) struct Step<'a> {
     /// The next vertex of the same ring.
     pub(crate) next: &'a [u32],
     pub(crate) previous: &'a [u32],
+    /// Of a complex map whose speeds are not linear.
+    pub(crate) speeds: Option<&'a Speeds>,
 }
 
 /// Which end of the edge that a chart touches the apex is.
@@ -128,20 +139,9 @@ pub(crate) struct Frame<'a> {
     seen: Vec<Seen>,
     /// Of the edge from each vertex.
     tangents: Vec<Dual>,
-}
-
-/// An affine map near the mean value map, by doubles: what it misses of the images is little.
-#[derive(Clone, Copy)]
-struct Fit {
-    matrix: [Point2; 2],
-    /// Zero at a vertex, which goes to its image.
-    shift: Point2,
-}
-
-impl Fit {
-    fn apply(&self, v: Vector) -> Vector {
-        vector(|k| Ball::exact(self.matrix[k][0]) * v[0] + Ball::exact(self.matrix[k][1]) * v[1])
-    }
+    /// The same edges with their images, and where the point is along each; empty without speeds.
+    lines: Vec<Line>,
+    places: Vec<Dual>,
 }
 
 /// What is known in a box of a chart.
@@ -162,7 +162,13 @@ impl<'a> Frame<'a> {
         let edges = step.points.iter().zip(step.next).map(edge).collect();
         let nothing = Seen { towards: [Ball::ZERO; 2], distance: Dual::ZERO, inverse: Dual::ZERO };
         let (seen, tangents) = (vec![nothing; offsets.len()], vec![Dual::ZERO; offsets.len()]);
-        Frame { step, chart, is_at_vertex, offsets, edges, seen, tangents }
+        let line = |(i, &j): (usize, &u32)| {
+            let ends = |points: &[Point2]| [points[i], points[j as usize]];
+            Line::new(ends(step.points), ends(step.images))
+        };
+        let lines: Vec<Line> = step.speeds.map_or(vec![], |_| step.next.iter().enumerate().map(line).collect());
+        let places = vec![Dual::ZERO; lines.len()];
+        Frame { step, chart, is_at_vertex, offsets, edges, seen, tangents, lines, places }
     }
 
     /// Encloses the determinant over a box of `s` and `λ`.
@@ -181,47 +187,6 @@ impl<'a> Frame<'a> {
         let turned = if self.is_at_vertex { width / size(along) } else { 0.0 };
         let splits_lambda = (s[1] * width / nearest).max(turned) > size(along) * (s[1] - s[0]) / nearest;
         Enclosure { determinant, splits_lambda }
-    }
-
-    /// An affine map that takes the vertices near a point close to their images, by least squares with the inverse fourth
-    /// powers of distances as weights; and how near the nearest vertex is.
-    fn fit(&self, at: Point2) -> (Fit, f64) {
-        let apex = self.is_at_vertex.then_some(self.chart.apex as usize);
-        let weighted = || {
-            let others = self.offsets.iter().enumerate().filter(|(i, _)| apex != Some(*i));
-            others.map(|(_, offset)| {
-                let [p, q] = offset.map(|vector| vector.map(|x| x.middle));
-                let square = (p[0] - at[0]).powi(2) + (p[1] - at[1]).powi(2);
-                (1.0 / (square * square), square, p, q)
-            })
-        };
-        let (mut total, mut means, mut nearest) = (0.0, [[0.0; 2]; 2], f64::INFINITY);
-        for (weight, square, p, q) in weighted() {
-            total += weight;
-            (0..2)
-                .for_each(|k| (means[0][k], means[1][k]) = (means[0][k] + weight * p[k], means[1][k] + weight * q[k]));
-            nearest = square.min(nearest);
-        }
-        let [p0, q0] = means.map(|sum| sum.map(|x| if self.is_at_vertex { 0.0 } else { x / total }));
-        let (mut normal, mut mixed) = ([0.0; 3], [[0.0; 2]; 2]);
-        for (weight, _, p, q) in weighted() {
-            let [x, y] = [p[0] - p0[0], p[1] - p0[1]];
-            let products = [x * x, x * y, y * y];
-            (0..3).for_each(|k| normal[k] += weight * products[k]);
-            (0..2).for_each(|k| {
-                let to = weight * (q[k] - q0[k]);
-                mixed[k] = [mixed[k][0] + to * x, mixed[k][1] + to * y];
-            });
-        }
-        // A little of the identity, where vertices are almost in line.
-        let ridge = 1e-6 * (normal[0] + normal[2]);
-        let [a, b, c] = [normal[0] + ridge, normal[1], normal[2] + ridge];
-        (0..2).for_each(|k| mixed[k][k] += ridge);
-        let matrix = mixed.map(|[x, y]| [x * c - y * b, y * a - x * b].map(|m| m / (a * c - b * b)));
-        let shift = [0, 1].map(|k| q0[k] - matrix[k][0] * p0[0] - matrix[k][1] * p0[1]);
-        let fit = Fit { matrix, shift };
-        let is_finite = matrix.iter().flatten().chain(&shift).all(|x| x.is_finite());
-        (if is_finite { fit } else { Fit { matrix: [[1.0, 0.0], [0.0, 1.0]], shift: [0.0; 2] } }, nearest.sqrt())
     }
 
     /// Formula (0), at `v + position`.
@@ -248,31 +213,38 @@ impl<'a> Frame<'a> {
         let length = Dual([size, Ball::ZERO, dot(along, e1) * size.inverse()]);
         let by_length = Dual::constant(Ball::ONE).over(length);
         let s_dual = Dual([s, Ball::ONE, -(skew * s)]);
+        let kappa = Dual([lambda, Ball::ZERO, Ball::ONE]);
         let (mut own, mut touched) = (Dual::ZERO, None);
+        // By edges at the apex; by the one that is touched, times `λ`.
+        let (mut added, mut added_touched) = ([Dual::ZERO; 2], [Dual::ZERO; 2]);
         for (touch, other, edge) in [
             (Touch::Begin, self.step.next[apex], apex),
             (Touch::End, self.step.previous[apex], self.step.previous[apex] as usize),
         ] {
             let is_touched = touch == self.chart.touch;
             let tangent = self.tangent_at_vertex(other as usize, touch, along, length, motion);
+            let factor = if is_touched { kappa } else { Dual::constant(Ball::ONE) };
+            let more = self.added_at_apex([edge, other as usize], touch, along, [tangent, by_length, s_dual, factor]);
             if is_touched {
                 touched = Some((tangent, other as usize));
+                added_touched = more;
                 self.tangents[edge] = Dual::ZERO;
             } else {
                 self.tangents[edge] = tangent;
                 own = own + tangent * by_length;
+                added = [added[0] + more[0], added[1] + more[1]];
             }
         }
         let [weight, mut x, mut y] = self.sums(Some(apex), fit);
+        [x, y] = [x + added[0], y + added[1]];
         let mut total = own + s_dual * weight;
         if let Some((tangent, other)) = touched {
-            let kappa = Dual([lambda, Ball::ZERO, Ball::ONE]);
             let inverse = self.seen[other].inverse;
             total = kappa * total + tangent * (by_length + s_dual * inverse);
             let residual = self.residual(other, fit);
             let share = tangent * inverse;
-            x = kappa * x + share.scaled(residual[0]);
-            y = kappa * y + share.scaled(residual[1]);
+            x = kappa * x + share.scaled(residual[0]) + added_touched[0];
+            y = kappa * y + share.scaled(residual[1]) + added_touched[1];
         }
         let rest = [x.over(total), y.over(total)];
         let g = vector(|k| rest[k].0[0] + s * rest[k].0[1]);
@@ -304,6 +276,9 @@ impl<'a> Frame<'a> {
             let j = next as usize;
             if apex.is_none_or(|v| v != i && v != j) {
                 self.tangents[i] = self.tangent(i, j, motion);
+                if let Some(line) = self.lines.get(i) {
+                    self.places[i] = line.place(&self.seen[i], motion);
+                }
             }
         }
     }
@@ -344,7 +319,7 @@ impl<'a> Frame<'a> {
         vector(|k| q[k] - Ball::exact(fit.shift[k]) - there[k])
     }
 
-    /// The sums of weights, and of weights times residuals, of all vertices but the apex.
+    /// The sums of weights, and of weights times residuals, of all vertices but the apex; with what speeds add.
     fn sums(&self, apex: Option<usize>, fit: Fit) -> [Dual; 3] {
         let mut sums = [Dual::ZERO; 3];
         for i in (0..self.offsets.len()).filter(|&i| apex != Some(i)) {
@@ -355,7 +330,8 @@ impl<'a> Frame<'a> {
             sums[1] = sums[1] + weight.scaled(residual[0]);
             sums[2] = sums[2] + weight.scaled(residual[1]);
         }
-        sums
+        let added = self.added_by_edges(apex);
+        [sums[0], sums[1] + added[0], sums[2] + added[1]]
     }
 }
 

@@ -27,8 +27,8 @@ pub enum Verdict {
 pub struct Claim {
     /// The claim in words, with the theorem that was applied.
     pub statement: String,
-    /// `foliation`, `piecewise-linear`, `shell`, `composite-harmonic`, `composite-mean-value`, `hyperbolic` or
-    /// `unit-tangent-bundle`.
+    /// `foliation`, `piecewise-linear`, `shell`, `composite-harmonic`, `composite-mean-value`, `complex-barycentric`,
+    /// `hyperbolic` or `unit-tangent-bundle`.
     pub kind: String,
     /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon`,
     /// `annulus`, `domain`, `geodesic-boundary`, `canonical-decomposition` or `unit-tangent-bundle`.

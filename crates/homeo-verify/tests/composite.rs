@@ -8,10 +8,9 @@ use homeo_verify::{SourceMatch, Unreadable, Verdict, compare_polygon, verify_byt
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use support::plane::{self, Point};
 use support::random::Random;
 use support::write::{npy, sha256, zip};
-
-type Point = [f64; 2];
 
 const MUTATIONS: usize = 800;
 
@@ -62,16 +61,8 @@ impl Arrays {
         verify_bytes(&self.bytes())
     }
 
-    /// First and second vertex of every edge.
     fn edges(&self) -> Vec<[usize; 2]> {
-        let mut first = 0;
-        let mut edges = Vec::new();
-        for &n in &self.sizes {
-            let n = n as usize;
-            edges.extend((0..n).map(|i| [first + i, first + (i + 1) % n]));
-            first += n;
-        }
-        edges
+        plane::edges(&self.sizes)
     }
 }
 
@@ -242,20 +233,8 @@ fn flaw(arrays: &Arrays) -> Option<String> {
     for (number, points) in arrays.stages.iter().enumerate() {
         let is_last = number + 1 == arrays.stages.len();
         for k in 0..2500 {
-            // Everywhere, and near the boundary and vertices.
-            let [a, b] = edges[random.below(edges.len())];
-            let share = if k % 3 == 0 { random.unit() } else { 10f64.powf(-4.0 * random.unit()) };
-            let off = 10f64.powf(-3.0 * random.unit());
-            let at = match k % 2 {
-                0 => [0, 1].map(|_| 3.0 * random.unit() - 1.5),
-                _ => [0, 1].map(|i| {
-                    let j = 1 - i;
-                    let normal = (points[b][j] - points[a][j]) * if i == 0 { -1.0 } else { 1.0 };
-                    points[a][i] + share * (points[b][i] - points[a][i]) + off * normal
-                }),
-            };
-            let windings: f64 = edges.iter().map(|&[p, q]| angle(points[p], points[q], at) / TAU).sum();
-            let windings = windings.round() as i64;
+            let at = plane::sample(&mut random, k, &edges, points);
+            let windings = plane::windings(&edges, points, at);
             if !(0..=1).contains(&windings) {
                 return Some(format!("domain {number} winds {windings} times round {at:?}"));
             }
@@ -263,11 +242,11 @@ fn flaw(arrays: &Arrays) -> Option<String> {
                 continue;
             }
             let all: Vec<Point> = points.iter().chain(&arrays.added[number]).copied().collect();
-            let covering = arrays.triangles[number].iter().filter(|t| is_in(t.map(|v| all[v as usize]), at)).count();
-            if covering as i64 != windings && !is_near_sides(&arrays.triangles[number], &all, at) {
-                return Some(format!("{covering} triangles of step {number} are over {at:?}, not {windings}"));
+            if plane::is_covered_otherwise(&arrays.triangles[number], &all, at, windings) {
+                return Some(format!("not {windings} triangles of step {number} are over {at:?}"));
             }
-            if windings == 1 && determinant(&edges, points, &arrays.stages[number + 1], at) < -1e-3 {
+            let map = |at: Point| image(&edges, points, &arrays.stages[number + 1], at);
+            if windings == 1 && plane::determinant(&edges, points, map, at) < -1e-3 {
                 return Some(format!("step {number} folds at {at:?}"));
             }
         }
@@ -275,32 +254,11 @@ fn flaw(arrays: &Arrays) -> Option<String> {
     None
 }
 
-/// The angle from `p` to `q` seen from a point, between minus and plus a half turn.
-fn angle(p: Point, q: Point, at: Point) -> f64 {
-    let ([a, b], [c, d]) = ([p[0] - at[0], p[1] - at[1]], [q[0] - at[0], q[1] - at[1]]);
-    f64::atan2(a * d - b * c, a * c + b * d)
-}
-
-fn is_in([a, b, c]: [Point; 3], at: Point) -> bool {
-    [[a, b], [b, c], [c, a]].iter().all(|&[p, q]| angle(p, q, at) > 0.0)
-}
-
-/// Whether a point is so near a side that rounding decides in which triangle it is.
-fn is_near_sides(triangles: &[[u32; 3]], points: &[Point], at: Point) -> bool {
-    let near = |&t: &[u32; 3]| {
-        (0..3).any(|k| {
-            let turned = angle(points[t[k] as usize], points[t[(k + 1) % 3] as usize], at).abs();
-            !(1e-9..=TAU / 2.0 - 1e-9).contains(&turned)
-        })
-    };
-    triangles.iter().any(near)
-}
-
 /// The mean value map by its definition: weights `(tan(α/2) + tan(α'/2)) / r`.
 fn image(edges: &[[usize; 2]], points: &[Point], images: &[Point], at: Point) -> Point {
     let (mut total, mut sum) = (0.0, [0.0; 2]);
     for &[p, q] in edges {
-        let tangent = (angle(points[p], points[q], at) / 2.0).tan();
+        let tangent = (plane::angle(points[p], points[q], at) / 2.0).tan();
         for v in [p, q] {
             let weight = tangent / (points[v][0] - at[0]).hypot(points[v][1] - at[1]);
             total += weight;
@@ -308,20 +266,4 @@ fn image(edges: &[[usize; 2]], points: &[Point], images: &[Point], at: Point) ->
         }
     }
     sum.map(|x| x / total)
-}
-
-/// By differences over a length that is small against the distance from all edges.
-fn determinant(edges: &[[usize; 2]], points: &[Point], images: &[Point], at: Point) -> f64 {
-    let distance = |&[p, q]: &[usize; 2]| {
-        let side = [points[q][0] - points[p][0], points[q][1] - points[p][1]];
-        let offset = [at[0] - points[p][0], at[1] - points[p][1]];
-        let share = (side[0] * offset[0] + side[1] * offset[1]) / (side[0] * side[0] + side[1] * side[1]);
-        let share = share.clamp(0.0, 1.0);
-        (offset[0] - share * side[0]).hypot(offset[1] - share * side[1])
-    };
-    let step = 1e-3 * edges.iter().map(distance).fold(f64::INFINITY, f64::min);
-    let f = |x: f64, y: f64| image(edges, points, images, [at[0] + x, at[1] + y]);
-    let ([right, left], [up, down]) = ([f(step, 0.0), f(-step, 0.0)], [f(0.0, step), f(0.0, -step)]);
-    let [u, v] = [(right, left), (up, down)].map(|(a, b)| [0, 1].map(|k| (a[k] - b[k]) / (2.0 * step)));
-    u[0] * v[1] - u[1] * v[0]
 }

@@ -83,7 +83,7 @@ pub fn exact(map: &StoredMap, direction: Direction, points: &[[Rational; 3]]) ->
         StoredMap::Foliation(map) => exact_in_map(map, direction, point).map_err(NoImage::Map),
         StoredMap::Shell(shell) => exact_in_shell(shell, direction, point).map_err(NoImage::Shell),
         StoredMap::Planar(PlanarMap::Harmonic(map)) => exact_in_plane(map, direction, point).map_err(NoImage::Planar),
-        StoredMap::Planar(PlanarMap::Composite(_)) => Err(NoImage::NotRational),
+        StoredMap::Planar(PlanarMap::Composite(_) | PlanarMap::Complex(_)) => Err(NoImage::NotRational),
     };
     points.par_iter().map(one).collect()
 }

@@ -111,9 +111,9 @@ fn floating(session: &Session, options: &EvalArgs, map: &StoredMap, format: Poin
 }
 
 fn exact(session: &Session, options: &EvalArgs, map: &StoredMap) -> Result<Done> {
-    if let StoredMap::Planar(PlanarMap::Composite(_)) = map {
-        let message = "composite mean value maps take rational points to others that are not: leave out --exact for \
-                       images with a bound of their error";
+    if let StoredMap::Planar(PlanarMap::Composite(_) | PlanarMap::Complex(_)) = map {
+        let message = "composite mean value maps and complex maps take rational points to others that are not: leave out \
+                       --exact for images with a bound of their error";
         return Err(Failure::input("no-exact-images", message));
     }
     let bytes = points::bytes_of(&options.points)?;

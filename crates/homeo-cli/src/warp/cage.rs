@@ -120,6 +120,8 @@ fn boundary_places(complex: &TetrahedronComplex, input: &Input, surface: &MeshIn
 
 fn check_options(options: &WarpArgs) -> Result<&Path> {
     let refused = [
+        ("--method complex", options.method == Some(MethodName::Complex)),
+        ("--degree", options.degree.is_some()),
         ("--landmarks", options.landmarks.is_some()),
         ("--pair", options.polygons.pair.is_some()),
         ("--map", options.map.is_some()),

@@ -1,6 +1,7 @@
 //! `homeo warp`: pictures and points move with a polygon, meshes and points in space with a cage, one-to-one.
 
 mod cage;
+mod complex;
 mod composite;
 #[cfg(feature = "gpu")]
 mod device;
@@ -39,6 +40,9 @@ pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Resu
     }
     cage::refuse_options(options)?;
     check_outputs(options)?;
+    if options.degree.is_some() && options.method != Some(MethodName::Complex) {
+        return Err(Failure::usage("--degree is that of the speeds of --method complex"));
+    }
     session.stage("read");
     let input = Input::read(&options.input)?;
     #[cfg(feature = "gpu")]
@@ -93,6 +97,17 @@ fn make(session: &Session, options: &WarpArgs) -> Result<Made> {
             map: map.into(),
         });
     }
+    if options.method == Some(MethodName::Complex) {
+        let degree = options.degree.unwrap_or(complex::DEGREE);
+        let (map, info) = complex::map(session, &pair, degree, turn)?;
+        let least = info.least_determinant;
+        return Ok(Made {
+            words: [("speeds", format!("of degree {degree}, determinant at least {least:.2e}"))],
+            quality: json!({"degree": degree, "least_determinant": least, "boxes": info.boxes}),
+            options: json!({"method": "complex", "degree": degree}),
+            map: map.into(),
+        });
+    }
     let map =
         harmonic_map(&pair, params(&options.polygons, turn), session).map_err(|error| explain(session, &error))?;
     let made = json!({
@@ -105,7 +120,7 @@ fn make(session: &Session, options: &WarpArgs) -> Result<Made> {
 fn piecewise_linear(map: PlanarMap, options: Value) -> Made {
     let triangles = match &map {
         PlanarMap::Harmonic(map) => [map.source_half(), map.target_half()].map(|half| half.parts().triangles.len()),
-        PlanarMap::Composite(_) => [0; 2],
+        PlanarMap::Composite(_) | PlanarMap::Complex(_) => [0; 2],
     };
     Made {
         map,

@@ -6,6 +6,7 @@ pub mod clip;
 pub mod immersed;
 pub mod mutants;
 pub mod oracle;
+pub mod plane;
 pub mod random;
 pub mod shells;
 pub mod write;

@@ -13,11 +13,13 @@ pub use bundle::write_bundle;
 pub use read::{MapFileError, read_map};
 pub use read_hyperbolic::{StoredStructure, kind_of, read_hyperbolic};
 pub use write::{
-    content_sha256, write_composite, write_harmonic, write_hyperbolic, write_map, write_planar, write_shell,
+    content_sha256, write_complex, write_composite, write_harmonic, write_hyperbolic, write_map, write_planar,
+    write_shell,
 };
 
 use homeo_core::number::Rational;
 
+use crate::complex::ComplexMap;
 use crate::composite::CompositeMap;
 use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, HarmonicMap, PlanarBijection, Shell, Target};
 
@@ -41,6 +43,8 @@ pub enum PlanarMap {
     Harmonic(HarmonicMap),
     /// A composite mean value map: smooth inside.
     Composite(CompositeMap),
+    /// A complex map with speeds: smooth inside, in one step.
+    Complex(ComplexMap),
 }
 
 impl PlanarMap {
@@ -49,6 +53,7 @@ impl PlanarMap {
         match self {
             Self::Harmonic(map) => map,
             Self::Composite(map) => map,
+            Self::Complex(map) => map,
         }
     }
 }
@@ -62,6 +67,12 @@ impl From<HarmonicMap> for PlanarMap {
 impl From<CompositeMap> for PlanarMap {
     fn from(map: CompositeMap) -> Self {
         Self::Composite(map)
+    }
+}
+
+impl From<ComplexMap> for PlanarMap {
+    fn from(map: ComplexMap) -> Self {
+        Self::Complex(map)
     }
 }
 

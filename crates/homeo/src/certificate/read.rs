@@ -6,13 +6,14 @@
 use std::io::{Cursor, Read};
 
 use homeo_core::mesh::{Adjacency, CellId, SimplicialComplex, VertexId};
-use homeo_core::planar::{PlanarDomain, Point2};
+use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 use serde_json::Value;
 use zip::{CompressionMethod, ZipArchive};
 
 use super::npy::decode;
 use super::{FoliationMap, StoredMap};
-use crate::composite::{CompositeMap, Tiling};
+use crate::complex::{ComplexMap, EdgeSpeeds};
+use crate::composite::{CompositeMap, Tiling, check_tiling};
 use crate::input::SourceMesh;
 use crate::map::{
     BoundaryPoint, Centre, Foliation, FoliationParts, HalfParts, HarmonicMap, Middle, SHARE_BITS, Section, Shell,
@@ -94,6 +95,10 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
         "composite-mean-value" => {
             is_of_dimension(&text("target"), 2)?;
             Ok(StoredMap::Planar(file.composite()?.into()))
+        }
+        "complex-barycentric" => {
+            is_of_dimension(&text("target"), 2)?;
+            Ok(StoredMap::Planar(file.complex()?.into()))
         }
         "hyperbolic" => Err(MapFileError::NoMap),
         other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
@@ -223,6 +228,37 @@ impl<'b> File<'b> {
         let triangles = self.parts(&triangles, "triangle_counts")?;
         let tilings = added.into_iter().zip(triangles).map(|(added, triangles)| Tiling { added, triangles });
         CompositeMap::from_domains(domains, tilings.collect()).map_err(|e| MapFileError::Inconsistent(e.to_string()))
+    }
+
+    fn complex(&mut self) -> Result<ComplexMap, MapFileError> {
+        let sizes = self.array::<u32>("source_rings", 1)?;
+        let domains = ["source", "target"].map(|name| {
+            let rings = self.rings(&format!("{name}_points"), &sizes)?;
+            PlanarDomain::new(rings).map_err(|e| MapFileError::Inconsistent(format!("{name}: {e}")))
+        });
+        let [source, target] = domains;
+        let pair = DomainPair { source: source?, target: target? };
+        let speeds = self.speeds()?;
+        // Evaluation needs no tiling; a file whose tiling is none is no map file all the same.
+        let tiling = Tiling { added: self.points_2d("added_points")?, triangles: self.rows::<u32, 3>("triangles")? };
+        check_tiling(&pair.source, &tiling).map_err(|e| MapFileError::Inconsistent(format!("the tiling: {e}")))?;
+        ComplexMap::from_speeds(&pair, speeds).map_err(|e| MapFileError::Inconsistent(e.to_string()))
+    }
+
+    /// Speeds of whatever degree.
+    fn speeds(&mut self) -> Result<EdgeSpeeds, MapFileError> {
+        let name = "control_values";
+        let found = (1..=8).find_map(|degree| Some((degree, self.array::<f64>(name, degree + 1).ok()?)));
+        let Some((degree, values)) = found else {
+            self.array::<f64>(name, 2)?;
+            return inconsistent(format!("{name} has no rows of two to nine numbers"));
+        };
+        let rows = values.chunks_exact(degree + 1);
+        if let Some(edge) = rows.clone().position(|row| row[0] != 0.0 || row[degree] != 1.0) {
+            return inconsistent(format!("the control values of edge {edge} do not begin with 0 and end with 1"));
+        }
+        let inner = rows.map(|row| row[1..degree].to_vec()).collect();
+        EdgeSpeeds::new(degree, inner).map_err(|e| MapFileError::Inconsistent(e.to_string()))
     }
 
     /// Rows cut into parts of as many as an array says.

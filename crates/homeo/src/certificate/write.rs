@@ -13,7 +13,8 @@ use zip::{CompressionMethod, ZipWriter};
 
 use super::npy::{Element, encode};
 use super::{FoliationMap, PlanarMap, Provenance, either};
-use crate::composite::CompositeMap;
+use crate::complex::ComplexMap;
+use crate::composite::{CompositeMap, triangulate};
 use crate::input::SourceMesh;
 use crate::map::{Bijection, Centre, Foliation, HarmonicMap, PlanarBijection, Section, Shell};
 
@@ -58,11 +59,12 @@ pub fn write_shell(shell: &Shell, provenance: &Provenance, out: &mut (impl Write
 /// Writes a map between planar domains with what its certificate needs. The same map gives the same bytes.
 ///
 /// # Errors
-/// When `out` cannot be written.
+/// When `out` cannot be written; for complex maps as [`write_complex`].
 pub fn write_planar(map: &PlanarMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
     match map {
         PlanarMap::Harmonic(map) => write_harmonic(map, provenance, out),
         PlanarMap::Composite(map) => write_composite(map, provenance, out),
+        PlanarMap::Complex(map) => write_complex(map, provenance, out),
     }
 }
 
@@ -71,12 +73,8 @@ pub fn write_planar(map: &PlanarMap, provenance: &Provenance, out: &mut (impl Wr
 /// # Errors
 /// When `out` cannot be written.
 pub fn write_composite(map: &CompositeMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
-    let target = match map.source().rings().len() {
-        1 => "polygon",
-        2 => "annulus",
-        _ => "domain",
-    };
-    let mut archive = Archive::begin_planar(map.source(), ["composite-mean-value", target], provenance, out)?;
+    let kind = ["composite-mean-value", target_name(map.source())];
+    let mut archive = Archive::begin_planar(map.source(), kind, provenance, out)?;
     archive.points("stage_points", &map.domains()[1..].iter().flat_map(|d| d.vertices()).collect::<Vec<_>>())?;
     let tilings = map.tilings();
     archive.array("added_counts", &[tilings.len()], tilings.iter().map(|tiling| tiling.added.len() as u32))?;
@@ -84,6 +82,52 @@ pub fn write_composite(map: &CompositeMap, provenance: &Provenance, out: &mut (i
     archive.array("triangle_counts", &[tilings.len()], tilings.iter().map(|tiling| tiling.triangles.len() as u32))?;
     let triangles: Vec<u32> = tilings.iter().flat_map(|t| t.triangles.as_flattened()).copied().collect();
     archive.array("triangles", &[triangles.len() / 3, 3], triangles.into_iter())?;
+    archive.finish()
+}
+
+/// The target of a map by its holes.
+fn target_name(source: &PlanarDomain) -> &'static str {
+    match source.rings().len() {
+        1 => "polygon",
+        2 => "annulus",
+        _ => "domain",
+    }
+}
+
+/// Writes a complex map with speeds, with what its certificate needs: a tiling of the source, which is made here. The same
+/// map gives the same bytes.
+///
+/// # Errors
+/// When `out` cannot be written, and when the source cannot be [tiled](triangulate).
+///
+/// # Example
+/// ```
+/// use homeo::certificate::{PlanarMap, Provenance, StoredMap, read_map, write_complex};
+/// use homeo::complex::{ComplexMap, EdgeSpeeds};
+/// use homeo::composite::JacobianLimits;
+/// use homeo_core::planar::DomainPair;
+/// let square = vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]];
+/// let kite = vec![vec![[0.0, 0.0], [1.0, 0.0], [0.8, 0.8], [0.0, 1.0]]];
+/// let pair = DomainPair::new(square, kite)?;
+/// let speeds = EdgeSpeeds::new(2, vec![vec![0.5], vec![0.6], vec![0.4], vec![0.5]])?;
+/// let map = ComplexMap::with_speeds(&pair, speeds, &JacobianLimits::default())?;
+/// let mut file = std::io::Cursor::new(Vec::new());
+/// write_complex(&map, &Provenance::default(), &mut file)?;
+/// let Ok(StoredMap::Planar(PlanarMap::Complex(back))) = read_map(file.get_ref()) else { panic!("another kind") };
+/// assert_eq!(back.speeds(), map.speeds());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_complex(map: &ComplexMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
+    let tiling = triangulate(map.source()).map_err(io::Error::other)?;
+    let kind = ["complex-barycentric", target_name(map.source())];
+    let mut archive = Archive::begin_planar(map.source(), kind, provenance, out)?;
+    archive.points("target_points", &map.target().vertices().collect::<Vec<_>>())?;
+    let inner = map.speeds().control_values();
+    let rows: Vec<f64> = inner.iter().flat_map(|row| [&[0.0], &row[..], &[1.0]].concat()).collect();
+    archive.array("control_values", &[inner.len(), map.speeds().degree() + 1], rows.into_iter())?;
+    archive.points("added_points", &tiling.added)?;
+    let triangles = tiling.triangles.as_flattened().iter().copied();
+    archive.array("triangles", &[tiling.triangles.len(), 3], triangles)?;
     archive.finish()
 }
 

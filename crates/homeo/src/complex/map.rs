@@ -53,7 +53,8 @@ pub struct ComplexInfo {
 ///
 /// # Guarantee
 /// The vertices and control values stored define the map. It is proved to be a homeomorphism of the closed domains that
-/// sends edges onto edges by their speeds `σ_i`, smooth inside. Linear speeds give the mean value map.
+/// sends edges onto edges by their speeds `σ_i`, smooth inside; but for [`from_speeds`](Self::from_speeds), where a
+/// certificate has to say so. Linear speeds give the mean value map.
 ///
 /// ```
 /// use homeo::complex::{ComplexMap, ComplexParams};
@@ -153,7 +154,7 @@ impl ComplexMap {
                 JacobianVerdict::Positive { least, boxes } => {
                     let sampled = [search.least(), linear].map(|share| share * search.ratio());
                     let info = ComplexInfo { least_determinant: least, sampled, boxes, rounds };
-                    return Ok((Self::proved(pair, outline.clone(), speeds), info));
+                    return Ok((Self::of(pair, outline.clone(), speeds), info));
                 }
                 JacobianVerdict::Negative { point, at_most, .. } => (point, ComplexError::Folds { point, at_most }),
                 JacobianVerdict::Undecided { point, .. } => (point, ComplexError::Undecided { point }),
@@ -172,13 +173,34 @@ impl ComplexMap {
     /// The speeds do not fit; the map folds, or is undecided, and where.
     pub fn with_speeds(pair: &DomainPair, speeds: EdgeSpeeds, limits: &JacobianLimits) -> Result<Self, ComplexError> {
         match bound_complex_jacobian(pair, &speeds, limits)? {
-            JacobianVerdict::Positive { .. } => Ok(Self::proved(pair, fitting(pair, &speeds)?, speeds)),
+            JacobianVerdict::Positive { .. } => Ok(Self::from_speeds(pair, speeds)?),
             JacobianVerdict::Negative { point, at_most, .. } => Err(ComplexError::Folds { point, at_most }),
             JacobianVerdict::Undecided { point, .. } => Err(ComplexError::Undecided { point }),
         }
     }
 
-    fn proved(pair: &DomainPair, outline: Outline, speeds: EdgeSpeeds) -> Self {
+    /// The map of given speeds. That it is one-to-one is not proved here: a certificate of the map says so, or
+    /// [`bound_complex_jacobian`].
+    ///
+    /// # Errors
+    /// There are not as many speeds as edges.
+    ///
+    /// # Example
+    /// ```
+    /// use homeo::complex::{ComplexMap, EdgeSpeeds};
+    /// use homeo_core::planar::DomainPair;
+    /// let square = vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]];
+    /// let pair = DomainPair::new(square.clone(), square)?;
+    /// let map = ComplexMap::from_speeds(&pair, EdgeSpeeds::linear(4))?;
+    /// assert!((map.forward([0.25, 0.5])?.point[0] - 0.25).abs() < 1e-12);
+    /// assert!(ComplexMap::from_speeds(&pair, EdgeSpeeds::linear(3)).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn from_speeds(pair: &DomainPair, speeds: EdgeSpeeds) -> Result<Self, SpeedError> {
+        Ok(Self::of(pair, fitting(pair, &speeds)?, speeds))
+    }
+
+    fn of(pair: &DomainPair, outline: Outline, speeds: EdgeSpeeds) -> Self {
         let (source, target) = (pair.source.clone(), pair.target.clone());
         let mut this = Self { source, target, outline, speeds, starts: Vec::new() };
         this.starts = invert::starts(&this);

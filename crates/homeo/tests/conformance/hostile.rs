@@ -34,6 +34,7 @@ fn files() -> Vec<Vec<u8>> {
         shells::bytes_of(&shells::built(&shells::singular(), 30)),
         planar::small_file(false),
         planar::small_file(true),
+        planar::small_complex_file(),
     ]
 }
 

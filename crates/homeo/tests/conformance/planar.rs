@@ -3,9 +3,11 @@
 use std::f64::consts::TAU;
 use std::io::Cursor;
 
-use homeo::certificate::{PlanarMap, Provenance, StoredMap, read_map, write_composite, write_harmonic};
-use homeo::complex::{ComplexMap, ComplexParams};
-use homeo::composite::{CompositeMap, PartitionParams};
+use homeo::certificate::{
+    PlanarMap, Provenance, StoredMap, read_map, write_complex, write_composite, write_harmonic, write_planar,
+};
+use homeo::complex::{ComplexMap, ComplexParams, EdgeSpeeds};
+use homeo::composite::{CompositeMap, JacobianLimits, PartitionParams};
 use homeo::construct::harmonic::{HarmonicError, HarmonicParams, MiddleShape, harmonic_map};
 use homeo::map::{Enclosed2, HarmonicMap, PlanarBijection, PlanarEvaluationError};
 use homeo::progress::Silent;
@@ -283,6 +285,59 @@ fn complex_maps_obey_the_same_laws() {
         let (map, info) = ComplexMap::build(&pair, &ComplexParams::default(), &Silent).expect("a map");
         assert!(info.least_determinant > 0.0);
         check_any(&map, &pair);
+        check_complex_file(&map, &pair);
+        let again = || ComplexMap::build(&pair, &ComplexParams::default(), &Silent).expect("a map").0;
+        let bytes = [1, 2].map(|threads| complex_bytes(&in_threads(threads, again)));
+        assert!(bytes[0] == bytes[1], "the file differs when built with two threads");
+    }
+}
+
+fn complex_bytes(map: &ComplexMap) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    write_complex(map, &Provenance::default(), &mut bytes).expect("memory can be written");
+    bytes.into_inner()
+}
+
+/// A complex map of few vertices.
+pub fn small_complex_file() -> Vec<u8> {
+    let triangle = |x: f64| vec![vec![[0.0, 0.0], [1.0, 0.0], [x, 1.0]]];
+    let speeds = EdgeSpeeds::new(2, vec![vec![0.5], vec![0.45], vec![0.55]]).expect("speeds");
+    let pair = pair(triangle(0.0), triangle(0.3));
+    complex_bytes(&ComplexMap::with_speeds(&pair, speeds, &JacobianLimits::default()).expect("a map"))
+}
+
+fn check_complex_file(map: &ComplexMap, pair: &DomainPair) {
+    let bytes = complex_bytes(map);
+    let Ok(StoredMap::Planar(read)) = read_map(&bytes) else { panic!("what was written can be read") };
+    let mut again = Cursor::new(Vec::new());
+    write_planar(&read, &Provenance::default(), &mut again).expect("memory can be written");
+    assert!(bytes == again.into_inner(), "the file differs when read and written");
+    let PlanarMap::Complex(read) = read else { panic!("another kind of map was read") };
+    assert_eq!(read.speeds(), map.speeds());
+    for point in points(&pair.source).0 {
+        assert_eq!(read.forward(point), map.forward(point));
+        assert_eq!(read.inverse(point), map.inverse(point));
+    }
+    match verify_bytes(&bytes) {
+        Ok(Verdict::Certified(claim)) => assert_eq!(claim.kind, "complex-barycentric"),
+        other => panic!("not certified: {other:?}"),
+    }
+    assert_eq!(compare_polygon(&bytes, pair.source.rings()), Ok(SourceMatch::Same));
+    let other = compare_polygon(&bytes, pair.target.rings()).expect("readable");
+    assert_eq!(other == SourceMatch::Same, pair.source == pair.target);
+}
+
+/// Read without a proof, a map that folds can be asked; the checker refutes its file.
+#[test]
+fn a_complex_map_that_folds_is_refuted() {
+    let arrow = |corner: f64| vec![vec![[0.0, 0.0], [1.0, 0.0], [corner, corner], [0.0, 1.0]]];
+    for (corner, holds) in [(0.8, true), (0.2, false)] {
+        let map = ComplexMap::from_speeds(&pair(square(), arrow(corner)), EdgeSpeeds::linear(4)).expect("a map");
+        match verify_bytes(&complex_bytes(&map)) {
+            Ok(Verdict::Certified(_)) => assert!(holds),
+            Ok(Verdict::Refuted(witness)) => assert_eq!((holds, witness.rule), (false, "K3")),
+            other => panic!("{corner}: {other:?}"),
+        }
     }
 }
 
