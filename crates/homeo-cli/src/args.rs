@@ -487,9 +487,9 @@ pub struct EvalArgs {
   homeo map testdata/meshes/spot.mesh --onto cube -o spot.homeo
   homeo map testdata/meshes/spot.mesh --onto cube --seed 2 -o again.homeo
   homeo compose spot.homeo again.homeo --points testdata/points/spot.csv -o moved.csv
-  homeo map testdata/meshes/face.obj --onto disk -o face.homeo
-  homeo map testdata/meshes/face.obj --onto disk --seed 2 -o other.homeo
-  homeo compose face.homeo other.homeo --from testdata/meshes/face.obj --onto testdata/meshes/face.obj -o face.vtu
+  homeo map testdata/meshes/sheet.obj --onto square -o sheet.homeo
+  homeo map testdata/meshes/face.obj --onto square -o face.homeo
+  homeo compose sheet.homeo face.homeo --from testdata/meshes/sheet.obj --onto testdata/meshes/face.obj -o dressed.obj
 
 The composite of a certified map and the inverse of another is one-to-one and onto. Both files are
 checked first. In floating point an answer is the image, with its error, of a point of the common
