@@ -128,6 +128,11 @@ fn fields_are_those_of_the_corresponding_places() {
     let line = "compose a.homeo b.homeo --from fields.vtu --onto b.obj -o out.vtu --json -q";
     let report = folder.line(line).expect(0).json();
     assert_eq!(report["transfer"][0]["name"], "place");
+    let bytes = folder.read("out.vtu");
+    for threads in [1, 2] {
+        folder.line(&format!("{line} --threads {threads}")).expect(0);
+        assert_eq!(folder.read("out.vtu"), bytes, "{threads} threads");
+    }
     let (b, out) = (mesh(&folder, "b.obj"), mesh(&folder, "out.vtu"));
     assert_eq!((&out.positions, &out.polygons), (&b.positions, &b.polygons));
     let expected = places_in_a(&folder, b.positions.iter().map(|[x, y, z]| format!("{x},{y},{z}\n")));
