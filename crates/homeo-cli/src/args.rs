@@ -487,10 +487,17 @@ pub struct EvalArgs {
   homeo map testdata/meshes/spot.mesh --onto cube -o spot.homeo
   homeo map testdata/meshes/spot.mesh --onto cube --seed 2 -o again.homeo
   homeo compose spot.homeo again.homeo --points testdata/points/spot.csv -o moved.csv
+  homeo map testdata/meshes/sheet.obj --onto square -o sheet.homeo
+  homeo map testdata/meshes/face.obj --onto square -o face.homeo
+  homeo compose sheet.homeo face.homeo --from testdata/meshes/sheet.obj --onto testdata/meshes/face.obj -o dressed.obj
 
 The composite of a certified map and the inverse of another is one-to-one and onto. Both files are
 checked first. In floating point an answer is the image, with its error, of a point of the common
-shape that is off by the other error that is reported; --exact is without any.")]
+shape that is off by the other error that is reported; --exact is without any.
+
+With --from and --onto (disks only) what MESH_A says at its vertices, corners and triangles is read off at the places
+that correspond to those of MESH_B, and written as fields of MESH_B beside its own; where it has one of that name, with
+the prefix from_. Which triangle a place lies in is decided exactly.")]
 pub struct ComposeArgs {
     /// The map that points take first
     #[arg(value_name = "A")]
@@ -499,17 +506,42 @@ pub struct ComposeArgs {
     #[arg(value_name = "B")]
     pub second: PathBuf,
     /// Points of the source of A
-    #[arg(long, value_name = "P")]
-    pub points: PathBuf,
+    #[arg(long, value_name = "P", required_unless_present = "from", conflicts_with = "from")]
+    pub points: Option<PathBuf>,
     /// In rationals, without any error (CSV only)
-    #[arg(long)]
+    #[arg(long, requires = "points")]
     pub exact: bool,
     /// What a point outside the source of A gives
     #[arg(long, value_enum, default_value_t = Outside::Error)]
     pub outside: Outside,
-    /// The file to write (.npy or .csv)
+    /// The file to write: .npy or .csv for points, a mesh for --from
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub across: AcrossArgs,
+}
+
+/// Meshes between which fields are moved.
+#[derive(Debug, Args)]
+pub struct AcrossArgs {
+    /// The mesh that has the fields: the very one that A was made of
+    #[arg(long, value_name = "MESH_A", requires = "onto", requires = "output")]
+    pub from: Option<PathBuf>,
+    /// The mesh that gets them: the very one that B was made of
+    #[arg(long, value_name = "MESH_B", requires = "from")]
+    pub onto: Option<PathBuf>,
+    /// Write NAME_status beside each field: 0 copied, 1 interpolated, 2 nearest corner, 3 split by a seam, 4 missing
+    #[arg(long, requires = "from")]
+    pub status: bool,
+    /// Merge vertices of the meshes as `map --weld` does
+    #[arg(long, requires = "from")]
+    pub weld: bool,
+    /// Cut their polygons as `map --triangulate` does
+    #[arg(long, requires = "from")]
+    pub triangulate: bool,
+    /// Orient them as `map --orient` does
+    #[arg(long, requires = "from")]
+    pub orient: bool,
 }
 
 #[derive(Debug, Args)]
@@ -661,9 +693,13 @@ pub struct MorphArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   homeo blend testdata/polygons/ellipse.json testdata/polygons/bean.json --frames 9 -o blend.svg
+  homeo blend testdata/polygons/ellipse.json testdata/polygons/bean.json --spline 24 -o splines.json
 
 Curves are JSON lists [[x, y], ...] of samples, or a path of an SVG drawing, dense ones and as many as one likes; the first ones correspond.
-Every curve between is closed; whether it meets itself is tested exactly, and said.")]
+Every curve between is closed; whether it meets itself is tested exactly, and said. With --spline each frame of the
+.json also has \"spline\": {\"control\": [[x, y], ...], \"distance\": d}, the control points of a uniform closed cubic
+B-spline and the greatest distance of a sample from it; whether curves meet themselves is still said of the samples. A
+file of the form {\"control\": [[x, y], ...]} is such a spline itself.")]
 pub struct BlendArgs {
     /// The first curve
     #[arg(value_name = "A.json")]
@@ -677,6 +713,9 @@ pub struct BlendArgs {
     /// How many curves, the first and the last included
     #[arg(long, value_name = "N", default_value_t = 11, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     pub frames: u32,
+    /// Fit a closed cubic B-spline of N control points to each curve: written to .json, drawn in .svg as Bezier pieces
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "50", value_parser = control_points)]
+    pub spline: Option<usize>,
 }
 
 #[derive(Debug, Args)]
@@ -755,6 +794,8 @@ pub enum PathName {
     Straight,
     /// Edge lengths and angles change evenly: turned parts turn and do not shrink
     Angles,
+    /// Parts of the length change evenly, and turning angles nearly so: for dense samples of curves; no hole
+    Curvature,
     /// Every ring turns about its middle, and changes straight in its turning frame
     Turning,
     /// Polygons never cross themselves; one hole at most
@@ -845,6 +886,11 @@ fn at_least_one(text: &str) -> Result<usize, String> {
 
 fn degree(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|n| (1..=8).contains(n)).ok_or_else(|| "a whole number from 1 to 8 is needed".to_owned())
+}
+
+fn control_points(text: &str) -> Result<usize, String> {
+    let is_sensible = |n: &usize| (4..=2_000).contains(n);
+    text.parse().ok().filter(is_sensible).ok_or_else(|| "a whole number from 4 to 2000 is needed".to_owned())
 }
 
 fn steps(text: &str) -> Result<usize, String> {

@@ -285,18 +285,19 @@ fn a_path_that_crosses_itself_is_refused() {
 }
 
 #[test]
-fn curves_are_blended_and_closed() {
+fn polygons_move_by_curvature() {
     let folder = folder();
-    let line = "blend testdata/polygons/ellipse.json testdata/polygons/bean.json --frames 5";
-    let report = folder.line(&format!("{line} -o b.json --json")).expect(0).json();
-    assert_eq!(report["quality"]["frames"], 5);
-    let curves: serde_json::Value = serde_json::from_str(&folder.text("b.json")).unwrap();
-    let first: serde_json::Value = serde_json::from_str(&folder.text("testdata/polygons/ellipse.json")).unwrap();
-    assert_eq!((&curves["frames"][0]["points"], &curves["frames"][2]["simple"]), (&first, &true.into()));
-    folder.line(&format!("{line} -o b.svg")).expect(0);
-    assert_eq!(folder.text("b.svg").matches("<polygon").count(), 5);
-    folder.write("eight.json", "[[0,0],[2,2],[2,0],[0,2]]");
-    let report = folder.line("blend testdata/polygons/ellipse.json eight.json -o c.svg --json").expect(3).json();
-    assert_eq!(report["error"]["code"], "unfit-input");
-    folder.line(&format!("{line} -o b.png")).expect(2);
+    let line = "testdata/images/checker.png --pair testdata/polygons/star_to_circle.json --path curvature";
+    let report = folder.line(&format!("morph {line} --frames 3 --triangles 500 -o m.json --json -q")).expect(0).json();
+    assert_eq!(report["quality"]["path"], "curvature");
+    let frames: serde_json::Value = serde_json::from_str(&folder.text("m.json")).unwrap();
+    let pair: serde_json::Value = serde_json::from_str(&folder.text("testdata/polygons/star_to_circle.json")).unwrap();
+    let ring = |k: usize| frames["frames"][k][0].clone();
+    assert_eq!(ring(0).as_array().unwrap().len(), ring(1).as_array().unwrap().len());
+    assert_eq!((&ring(0), &ring(2)), (&pair["source"], &pair["target"]));
+    let said = folder.line(&format!("warp {line} --method mean-value -o w.png")).expect(0).stdout;
+    assert!(said.contains("certificate") && said.contains("on the path `curvature`"), "{said}");
+    let line = line.replace("star_to_circle", "hole_turned");
+    let refused = folder.line(&format!("warp {line} --method mean-value -o w.png --json")).expect(4).json();
+    assert!(refused["error"]["message"].as_str().unwrap().contains("without holes"), "{refused}");
 }

@@ -12,7 +12,9 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use homeo::shape::{LengthsAndAngles, LinearPath, ShapeError, ShapePath, SimplePath, TurningPath, first_not_simple};
+use homeo::shape::{
+    CurvaturePath, LengthsAndAngles, LinearPath, ShapeError, ShapePath, SimplePath, TurningPath, first_not_simple,
+};
 use homeo_core::planar::{DomainPair, read_pair};
 
 fn main() -> ExitCode {
@@ -39,8 +41,10 @@ fn run(folder: &Path, steps: usize) -> Result<(), String> {
     let mut files: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     files.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
     files.sort();
-    println!("| pair | vertices | angles | straight | turning | simple | all vertices | seconds | for each shape |");
-    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|");
+    println!(
+        "| pair | vertices | angles | curvature | straight | turning | simple | all vertices | seconds | for each shape |"
+    );
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|");
     for path in files {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         println!("| {name} | {} |", row(&path, steps).map_err(|message| format!("{name}: {message}"))?);
@@ -54,15 +58,18 @@ fn row(path: &Path, steps: usize) -> Result<String, String> {
     let rings = read_pair(&value).map_err(|error| error.to_string())?;
     let pair = match DomainPair::new(rings.source, rings.target) {
         Ok(pair) => pair,
-        Err(error) => return Ok(format!("| | | | | | | {error}")),
+        Err(error) => return Ok(format!("| | | | | | | | {error}")),
     };
     let [source, target] = [&pair.source, &pair.target].map(|domain| domain.rings());
-    let angles = match source.len() {
-        1 => said(LengthsAndAngles::new(source[0].clone(), target[0].clone()), steps),
-        _ => "-".to_owned(),
+    let by_bends = match (source, target) {
+        ([source], [target]) => [
+            said(LengthsAndAngles::new(source.clone(), target.clone()), steps),
+            said(CurvaturePath::new(source.clone(), target.clone()), steps),
+        ],
+        _ => ["-", "-"].map(str::to_owned),
     };
-    let columns =
-        [angles, said(LinearPath::between(&pair), steps), said(TurningPath::between(&pair, &[]), steps)].join(" | ");
+    let straight = [said(LinearPath::between(&pair), steps), said(TurningPath::between(&pair, &[]), steps)];
+    let columns = [by_bends, straight].concat().join(" | ");
     let start = Instant::now();
     let simple = SimplePath::between(&pair);
     let made = start.elapsed().as_secs_f64();

@@ -105,3 +105,31 @@ fn what_cannot_be_fitted_is_said() {
     let coarse = fit_closed_spline(&sample_closed(flower, 100), &params(8));
     assert!(matches!(&coarse, Err(SplineError::NotReached { found }) if found.distance > 1e-3), "{coarse:?}");
 }
+
+/// The cubic of four Bezier points.
+fn cubic(piece: &[[f64; 2]; 4], t: f64) -> [f64; 2] {
+    let u = 1.0 - t;
+    let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];
+    [0, 1].map(|k| weights.iter().zip(piece).map(|(weight, point)| weight * point[k]).sum())
+}
+
+#[test]
+fn bezier_pieces_are_the_spline_and_close() {
+    let control = vec![[0.0, 0.0], [3.0, 1.0], [2.0, 4.0], [-1.0, 3.0], [-2.0, 0.5]];
+    let spline = ClosedSpline::new(control.clone()).unwrap();
+    let farthest = |pieces: &[[[f64; 2]; 4]]| {
+        let away = |i: usize| {
+            let (piece, t) = (i / 8, (i % 8) as f64 / 8.0);
+            let ([x, y], [a, b]) = (cubic(&pieces[piece], t), spline.at((piece as f64 + t) / 5.0)[0]);
+            (x - a).hypot(y - b)
+        };
+        (0..40).map(away).fold(0.0, f64::max)
+    };
+    let pieces = spline.bezier_pieces();
+    assert!(pieces.len() == 5 && farthest(&pieces) < 1e-14, "{:e}", farthest(&pieces));
+    assert!((0..5).all(|i| pieces[i][3] == pieces[(i + 1) % 5][0]), "pieces join bit for bit");
+    // The control: points of the spline with its control points between, as a careless drawing has it.
+    let careless: Vec<_> =
+        (0..5).map(|i| [pieces[i][0], control[(i + 1) % 5], control[(i + 2) % 5], pieces[i][3]]).collect();
+    assert!(farthest(&careless) > 0.1);
+}

@@ -1,5 +1,7 @@
 //! `homeo compose`: images under one map, and back under another onto the same shape.
 
+use std::path::Path;
+
 use homeo::certificate::StoredMap;
 use homeo::map::{Bijection, Enclosed};
 use homeo::progress::Progress;
@@ -11,17 +13,33 @@ use super::{CHUNK, EXACT_CHUNK, check_columns, check_options, count_outside, in_
 use crate::answer::Answer;
 use crate::args::{ComposeArgs, EvalArgs};
 use crate::failure::{Failure, Result};
+use crate::inside;
 use crate::outputs::{Outputs, check_target};
 use crate::points::{self, PointFormat, Table, csv, npy};
 use crate::proof;
 use crate::session::Session;
 use crate::text::{Lines, stages};
 
-/// Evaluates the composite at points.
+/// Evaluates the composite at points, or moves what a mesh carries.
 pub fn run(session: &Session, options: &ComposeArgs, outputs: &mut Outputs) -> Result<Answer> {
+    match &options.points {
+        Some(points) => at_points(session, options, points, outputs),
+        None => across(session, options, outputs),
+    }
+}
+
+fn across(session: &Session, options: &ComposeArgs, outputs: &mut Outputs) -> Result<Answer> {
+    let (first, first_claim) = proof::open_certified(session, &options.first)?;
+    let (second, second_claim) = proof::open_certified(session, &options.second)?;
+    check_targets(options, &first, &second)?;
+    let certificates = json!([proof::claim_json(&first_claim), proof::claim_json(&second_claim)]);
+    inside::across(session, options, [&first, &second], certificates, outputs)
+}
+
+fn at_points(session: &Session, options: &ComposeArgs, points: &Path, outputs: &mut Outputs) -> Result<Answer> {
     let forward = EvalArgs {
         map: options.first.clone(),
-        points: options.points.clone(),
+        points: points.to_path_buf(),
         inverse: false,
         exact: options.exact,
         outside: options.outside,

@@ -24,13 +24,21 @@ pub fn moved(
         return Ok(Vec::new());
     }
     session.stage("transfer");
-    let moved = transfer(shell, attributes, densities, session).map_err(|error| match error {
-        TransferError::NoDensity(_) => Failure::input("no-density", error.to_string()),
-        TransferError::Cancelled => session.stopped(),
-        TransferError::Rows { .. } | TransferError::NoSection => Failure::bug(error.to_string()),
-    })?;
+    let moved = transfer(shell, attributes, densities, session).map_err(|error| explain(session, &error))?;
     session.check()?;
     Ok(moved)
+}
+
+/// The failure for attributes that were not transferred.
+pub fn explain(session: &Session, error: &TransferError) -> Failure {
+    match error {
+        TransferError::NoDensity(_) => Failure::input("no-density", error.to_string()),
+        TransferError::Targets { .. } => Failure::input("targets", error.to_string()),
+        TransferError::Cancelled => session.stopped(),
+        TransferError::Rows { .. } | TransferError::NoSection | TransferError::NoImage { .. } => {
+            Failure::bug(error.to_string())
+        }
+    }
 }
 
 /// The attributes to be written; with their statuses, as numbers, where that is asked for.

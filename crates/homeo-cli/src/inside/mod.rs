@@ -1,8 +1,10 @@
-//! Work inside a shell: `homeo simplify`, `homeo remesh`, `homeo transfer`, `homeo pl`.
+//! Work inside a shell: `homeo simplify`, `homeo remesh`, `homeo transfer`, `homeo pl`; and `homeo compose` of what a mesh
+//! carries, which is a transfer too.
 //!
 //! The first three end alike: a surface in the shell is certified as the image of the source, what the source's file says is
 //! moved to it, and both are written.
 
+mod across;
 mod attributes;
 mod make;
 mod pl;
@@ -11,6 +13,7 @@ mod sizing;
 mod texture;
 mod transfer;
 
+pub use across::run as across;
 pub use make::{remesh, simplify};
 pub use pl::run as pl;
 pub use transfer::run as transfer;

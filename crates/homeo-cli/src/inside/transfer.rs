@@ -36,7 +36,7 @@ pub fn run(session: &Session, options: &TransferArgs, outputs: &mut Outputs) -> 
         return Err(Failure::input("wrong-kind", message));
     }
     let (shell, claim) = joined(session, options, shell, claim)?;
-    let from = read(session, options, &options.from)?;
+    let from = read(session, requested(options), &options.from)?;
     require_same(&options.from, &source_of(&from)?, shell.source())?;
     let moved = attributes::moved(session, &shell, &from.file.attributes, &options.density)?;
     if moved.is_empty() {
@@ -66,7 +66,7 @@ fn joined(session: &Session, options: &TransferArgs, shell: Shell, claim: Claim)
     let stored = shell.section().cloned();
     let parts = shell.parts().clone();
     let onto = match &options.onto {
-        Some(path) => Some(source_of(&read(session, options, path)?)?),
+        Some(path) => Some(source_of(&read(session, requested(options), path)?)?),
         None if options.inverse => Some(shell.source().clone()),
         None => None,
     };
@@ -128,15 +128,20 @@ fn no_section_because(shell: &Shell, what: &str, witness: &Witness) -> Failure {
     Failure::input("no-section", message).with("witness", proof::witness_json(witness)).with("elements", elements)
 }
 
-fn read(session: &Session, options: &TransferArgs, path: &Path) -> Result<MeshInput> {
-    let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
+fn requested(options: &TransferArgs) -> Requested {
+    Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient }
+}
+
+/// Reads a mesh whose attributes are moved, or to which they are.
+pub fn read(session: &Session, requested: Requested, path: &Path) -> Result<MeshInput> {
     let mesh = mesh_input::read(session, path, requested)?;
     mesh.changes.iter().chain(&mesh.file.losses).for_each(|note| session.display().note(note));
-    crate::refuse::unless_simplices(&mesh, options.triangulate)?;
+    crate::refuse::unless_simplices(&mesh, requested.triangulate)?;
     Ok(mesh)
 }
 
-fn source_of(mesh: &MeshInput) -> Result<SourceMesh<3>> {
+/// The surface of a file.
+pub fn source_of(mesh: &MeshInput) -> Result<SourceMesh<3>> {
     match &mesh.cells {
         Cells::Triangles(complex) => Ok(source_mesh(&mesh.file, complex)),
         Cells::Tetrahedra(_) => Err(Failure::input("wrong-dimension", "surfaces of triangles are needed, not volumes")),
@@ -144,7 +149,7 @@ fn source_of(mesh: &MeshInput) -> Result<SourceMesh<3>> {
 }
 
 /// Attributes belong to numbered vertices and triangles: the mesh has to be the very one of the map.
-fn require_same(path: &Path, mesh: &SourceMesh<3>, wanted: &SourceMesh<3>) -> Result<()> {
+pub fn require_same(path: &Path, mesh: &SourceMesh<3>, wanted: &SourceMesh<3>) -> Result<()> {
     let (p, q) = (mesh.positions(), wanted.positions());
     let (s, t) = (mesh.complex().cells(), wanted.complex().cells());
     let difference = if (p.len(), s.len()) != (q.len(), t.len()) {

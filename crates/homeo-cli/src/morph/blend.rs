@@ -1,9 +1,7 @@
 //! `homeo blend`: closed curves between two others, by curvature.
 
-use std::fmt::Write as _;
-
 use homeo::progress::Progress;
-use homeo::shape::{CurvatureBlend, ShapePath, check_simple};
+use homeo::shape::{CurvatureBlend, ShapePath, SplineError, SplineFit, SplineParams, check_simple, fit_closed_spline};
 use homeo_core::planar::Point2;
 use serde_json::json;
 
@@ -15,11 +13,16 @@ use crate::session::Session;
 use crate::text::{Lines, stages};
 use crate::warp::polygons;
 
+use super::drawing;
+
 /// A curve between, and when.
-struct Between {
-    time: f64,
-    points: Vec<Point2>,
-    is_simple: bool,
+pub struct Between {
+    pub time: f64,
+    pub points: Vec<Point2>,
+    /// Whether the points, joined by edges, do not meet themselves.
+    pub is_simple: bool,
+    /// The spline near the points, where splines are asked for.
+    pub fit: Option<SplineFit>,
 }
 
 /// Computes the curves and writes them.
@@ -43,15 +46,28 @@ pub fn blend(session: &Session, options: &BlendArgs, outputs: &mut Outputs) -> R
         let time = f64::from(frame) / f64::from(options.frames - 1);
         let rings = path.at(time).map_err(|e| Failure::limits("no-path", format!("{e}; nothing was written")))?;
         let is_simple = check_simple(&rings).is_ok();
-        curves.push(Between { time, points: rings.concat(), is_simple });
+        let points = rings.concat();
+        let fit = options.spline.map(|controls| fitted(&points, controls, time)).transpose()?;
+        curves.push(Between { time, points, is_simple, fit });
     }
     session.stage("write");
-    let text = if extension == "svg" { svg(&curves) } else { frames(&curves) };
+    let text = if extension == "svg" { drawing::svg(&curves) } else { frames(&curves) };
     outputs.stage(session, &options.output, |out| {
         std::io::Write::write_all(out, text.as_bytes()).map_err(|e| e.to_string())
     })?;
     session.end_stage();
     Ok(answer(session, options, &curves))
+}
+
+/// The spline near a curve; how near is said, whatever it is.
+fn fitted(points: &[Point2], controls: usize, time: f64) -> Result<SplineFit> {
+    match fit_closed_spline(points, &SplineParams { controls, ..SplineParams::default() }) {
+        Ok(fit) => Ok(fit),
+        Err(SplineError::NotReached { found }) => Ok(*found),
+        Err(error) => {
+            Err(Failure::input("no-spline", format!("the curve at time {time:.3}: {error}; nothing was written")))
+        }
+    }
 }
 
 fn answer(session: &Session, options: &BlendArgs, curves: &[Between]) -> Answer {
@@ -66,39 +82,27 @@ fn answer(session: &Session, options: &BlendArgs, curves: &[Between]) -> Answer 
     let mut lines = Lines::default();
     lines.add("curves", curves.len());
     lines.add("simple", format!("{} of {}, exactly", curves.len() - crossing.len(), curves.len()));
+    let distance = curves.iter().filter_map(|curve| Some(curve.fit.as_ref()?.distance)).fold(0.0, f64::max);
+    if let Some(controls) = options.spline {
+        lines.add("splines", format!("{controls} control points each; no sample is farther away than {distance:.2e}"));
+    }
     lines.add("time", stages(&session.seconds()));
     lines.add("written", options.output.display());
+    let splines = options.spline.map(|controls| json!({"control_points": controls, "max_distance": distance}));
     let fields = json!({
-        "quality": {"frames": curves.len(), "not_simple_at": crossing},
+        "quality": {"frames": curves.len(), "not_simple_at": crossing, "splines": splines},
         "output": options.output.display().to_string(),
     });
     Answer::new(fields, lines.below(&format!("{} blended into {}", options.from.display(), options.to.display())))
 }
 
 fn frames(curves: &[Between]) -> String {
-    let frame = |c: &Between| json!({"time": c.time, "points": c.points, "simple": c.is_simple});
-    json!({"frames": curves.iter().map(frame).collect::<Vec<_>>()}).to_string()
-}
-
-/// All curves in one drawing, from blue to red; those that meet themselves dashed.
-fn svg(curves: &[Between]) -> String {
-    let all = || curves.iter().flat_map(|curve| &curve.points);
-    let low = [0, 1].map(|k| all().map(|p| p[k]).fold(f64::INFINITY, f64::min));
-    let high = [0, 1].map(|k| all().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max));
-    let size = [0, 1].map(|k| high[k] - low[k]);
-    let scale = 800.0 / size[0].max(size[1]);
-    let [width, height] = size.map(|s| s * scale + 20.0);
-    let mut text = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.1} {height:.1}\" fill=\"none\" stroke-width=\"1.5\">\n"
-    );
-    for curve in curves {
-        let hue = 220.0 + 140.0 * curve.time;
-        let dashes = if curve.is_simple { "" } else { " stroke-dasharray=\"4 3\"" };
-        let _ = write!(text, "<polygon stroke=\"hsl({hue:.0} 70% 45%)\"{dashes} points=\"");
-        for [x, y] in &curve.points {
-            let _ = write!(text, "{:.2},{:.2} ", 10.0 + (x - low[0]) * scale, 10.0 + (high[1] - y) * scale);
+    let frame = |c: &Between| {
+        let mut frame = json!({"time": c.time, "points": c.points, "simple": c.is_simple});
+        if let Some(fit) = &c.fit {
+            frame["spline"] = json!({"control": fit.spline.control(), "distance": fit.distance});
         }
-        text.push_str("\"/>\n");
-    }
-    text + "</svg>\n"
+        frame
+    };
+    json!({"frames": curves.iter().map(frame).collect::<Vec<_>>()}).to_string()
 }

@@ -3,6 +3,7 @@
 mod animation;
 mod between;
 mod blend;
+mod drawing;
 
 pub use blend::blend;
 

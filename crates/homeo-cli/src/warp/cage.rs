@@ -190,8 +190,8 @@ fn path_of(options: &WarpArgs, cages: &CagePair) -> Result<Box<dyn PolyhedronPat
     Ok(match options.polygons.path {
         PathName::Auto | PathName::Straight => Box::new(StraightPolyhedra::new(source, target).map_err(failed)?),
         PathName::Angles => Box::new(TurningPolyhedra::new(source, target, cages.triangles()).map_err(failed)?),
-        PathName::Turning | PathName::Simple => {
-            let message = "--path turning and --path simple are for polygons; cages take straight or angles";
+        PathName::Curvature | PathName::Turning | PathName::Simple => {
+            let message = "--path curvature, turning and simple are for polygons; cages take straight or angles";
             return Err(Failure::usage(message));
         }
     })

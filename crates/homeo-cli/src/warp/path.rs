@@ -1,6 +1,6 @@
 //! How one polygon becomes another: the ways that there are, in the order in which they are tried.
 
-use homeo::shape::{LengthsAndAngles, LinearPath, ShapePath, SimplePath, TurningPath};
+use homeo::shape::{CurvaturePath, LengthsAndAngles, LinearPath, ShapePath, SimplePath, TurningPath};
 use homeo_core::planar::DomainPair;
 
 use crate::args::PathName;
@@ -18,6 +18,7 @@ pub fn ways(pair: &DomainPair, name: PathName, turn: Option<f64>) -> impl Iterat
     let names = match name {
         PathName::Straight => vec!["straight"],
         PathName::Angles => vec!["angles"],
+        PathName::Curvature => vec!["curvature"],
         PathName::Turning => vec!["turning"],
         PathName::Simple => vec!["simple"],
         PathName::Auto if pair.source.rings().len() > 1 => vec!["turning", "straight", "simple"],
@@ -44,11 +45,15 @@ fn way(pair: &DomainPair, name: &'static str, turn: Option<f64>) -> Result<Way, 
         }
         _ => {
             let [source, target] = [&pair.source, &pair.target].map(|domain| domain.rings());
-            if source.len() > 1 {
+            let ([source], [target]) = (source, target) else {
                 return Err("it is for polygons without holes".to_owned());
-            }
-            let path = LengthsAndAngles::new(source[0].clone(), target[0].clone()).map_err(|e| e.to_string())?;
-            Ok(Way { name, path: Box::new(path), turn: None })
+            };
+            let (source, target) = (source.clone(), target.clone());
+            let path: Box<dyn ShapePath> = match name {
+                "curvature" => Box::new(CurvaturePath::new(source, target).map_err(|e| e.to_string())?),
+                _ => Box::new(LengthsAndAngles::new(source, target).map_err(|e| e.to_string())?),
+            };
+            Ok(Way { name, path, turn: None })
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use homeo::shape::{ClosedSpline, sample_closed};
 use homeo_core::planar::{DomainPair, PairError, PlanarDomain, Point2, RingPair, read_pair, read_rings, read_svg};
 use serde_json::Value;
 
@@ -31,8 +32,19 @@ pub fn source(path: &Path) -> Result<PlanarDomain> {
     Ok(DomainPair::new(rings.clone(), rings).map_err(|error| explain(path, &error))?.source)
 }
 
-/// A closed curve as a list of points; it may cross itself.
+/// So many samples are taken of a spline for each of its control points.
+const SAMPLES: usize = 8;
+
+/// A closed curve as a list of points; it may cross itself. One that is given by control points is sampled.
 pub fn curve(path: &Path) -> Result<Vec<Point2>> {
+    if !is_drawing(path)
+        && let Some(control) = json(path)?.get("control")
+    {
+        let control: Vec<Point2> =
+            serde_json::from_value(control.clone()).map_err(|e| syntax(path, &format!("control: {e}")))?;
+        let spline = ClosedSpline::new(control).map_err(|e| syntax(path, &e.to_string()))?;
+        return Ok(sample_closed(|u| spline.at(u)[0], SAMPLES * spline.control().len()));
+    }
     let mut rings = rings(path)?;
     match rings.pop() {
         Some(ring) if rings.is_empty() => Ok(ring),

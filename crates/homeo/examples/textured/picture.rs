@@ -36,10 +36,35 @@ pub fn write(meshes: &[&str], image: &Path) -> Result<(), Box<dyn Error>> {
     let seen = |mesh: &MeshFile| mesh.positions.iter().map(|&p| turned(p)).collect::<Vec<Point>>();
     let frame = frame(&seen(&meshes[0]));
     let panels: Vec<Vec<Point>> = meshes.iter().map(|mesh| panel(&triangles(mesh, &seen(mesh)), frame)).collect();
+    save(&panels, image)
+}
+
+/// Draws patches, each at its own scale and from in front.
+pub fn write_patches(meshes: &[&str], image: &Path) -> Result<(), Box<dyn Error>> {
+    let meshes: Vec<MeshFile> = meshes.iter().map(|path| read_mesh(Path::new(path))).collect::<Result<_, _>>()?;
+    let panel = |mesh: &MeshFile| {
+        let side = if faces_away(mesh) { -1.0 } else { 1.0 };
+        let points: Vec<Point> = mesh.positions.iter().map(|&[x, y, z]| turned([side * x, y, side * z])).collect();
+        panel(&triangles(mesh, &points), frame(&points))
+    };
+    save(&meshes.iter().map(panel).collect::<Vec<_>>(), image)
+}
+
+/// Whether more of a mesh faces down the third axis than up.
+fn faces_away(mesh: &MeshFile) -> bool {
+    let doubled = |triangle: &[u32]| {
+        let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[triangle[k] as usize]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    mesh.polygons.iter().map(doubled).sum::<f64>() < 0.0
+}
+
+/// Writes panels side by side.
+fn save(panels: &[Vec<Point>], image: &Path) -> Result<(), Box<dyn Error>> {
     let rows = (0..SIDE).flat_map(|y| panels.iter().flat_map(move |panel| &panel[y * SIDE..(y + 1) * SIDE]));
     // Few shades make a small file.
     let pixels: Vec<[u8; 3]> = rows.map(|pixel| pixel.map(|x| (255.0 * (SHADES * x).round() / SHADES) as u8)).collect();
-    png::write(image, SIDE * meshes.len(), &pixels)?;
+    png::write(image, SIDE * panels.len(), &pixels)?;
     Ok(())
 }
 

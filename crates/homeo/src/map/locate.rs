@@ -104,7 +104,7 @@ impl<const K: usize> Locator<K> {
     }
 
     /// The child of a source cell that contains the point with the given weights.
-    fn child_exact(
+    pub(super) fn child_exact(
         &self,
         source: &SourceMesh<K>,
         mesh: &RefinedMesh<K>,

@@ -4,6 +4,7 @@
 //! exactly in rationals. What is proved about it lives in its certificate, not here.
 
 mod batch;
+mod by_cell;
 mod evaluate;
 mod exact;
 mod fast;

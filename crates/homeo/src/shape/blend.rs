@@ -1,8 +1,7 @@
 //! Paths of closed curves by curvature.
 
-use super::closing::closing_turns;
+use super::bent::{Ends, half_edges};
 use super::curvature::CurvatureProfile;
-use super::ring::{Measures, place_at, ring_of_edges, shorter_way};
 use super::{ShapeError, ShapePath, check_time, mix};
 
 /// Nodes of the joint partition that are closer than this part of the mean distance become one.
@@ -40,16 +39,13 @@ const CLOSE_NODES: f64 = 1e-6;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvatureBlend {
-    rings: [Vec<[f64; 2]>; 2],
-    source: Measures,
-    target: Measures,
+    ends: Ends,
     /// Parts of the length from node to node.
     lengths: Vec<f64>,
     /// Half the length of both edges at each node.
     weights: Vec<f64>,
     /// Curvatures at the nodes.
     curvatures: [Vec<f64>; 2],
-    rotation: f64,
 }
 
 impl CurvatureBlend {
@@ -62,22 +58,16 @@ impl CurvatureBlend {
     /// # Complexity
     /// That of sorting the nodes.
     pub fn new(source: Vec<[f64; 2]>, target: Vec<[f64; 2]>) -> Result<Self, ShapeError> {
-        let (a, b) = (Measures::new(&source)?, Measures::new(&target)?);
-        if a.turning_number != b.turning_number {
-            return Err(ShapeError::TurningNumbers { here: a.turning_number, there: b.turning_number });
-        }
-        let profiles = [CurvatureProfile::of(&a), CurvatureProfile::of(&b)];
+        let ends = Ends::new(source, target)?;
+        let profiles = ends.measures().map(CurvatureProfile::of);
         let nodes = joint_partition(&profiles);
         let m = nodes.len() - 1;
         let lengths: Vec<f64> = nodes.windows(2).map(|pair| pair[1] - pair[0]).collect();
         Ok(Self {
-            weights: (0..m).map(|i| 0.5 * (lengths[(i + m - 1) % m] + lengths[i])).collect(),
+            weights: half_edges(&lengths),
             curvatures: profiles.map(|profile| nodes[..m].iter().map(|&node| profile.at(node)).collect()),
-            rotation: shorter_way(b.mean_direction() - a.mean_direction()),
             lengths,
-            rings: [source, target],
-            source: a,
-            target: b,
+            ends,
         })
     }
 
@@ -112,8 +102,7 @@ impl CurvatureBlend {
 
     /// Turning angles that close the shape.
     fn closed(&self, t: f64) -> Result<Vec<f64>, ShapeError> {
-        closing_turns(&self.wanted(t), &self.weights, &self.lengths, self.source.turning_number as f64)
-            .map_err(|open| ShapeError::NotClosed { t, residual: open.0 })
+        self.ends.closed(t, &self.wanted(t), &self.weights, &self.lengths)
     }
 }
 
@@ -122,19 +111,10 @@ impl ShapePath for CurvatureBlend {
     /// Linear for each step of the iteration: ten steps, as a rule.
     fn at(&self, t: f64) -> Result<Vec<Vec<[f64; 2]>>, ShapeError> {
         check_time(t)?;
-        if t == 0.0 || t == 1.0 {
-            return Ok(vec![self.rings[t as usize].clone()]);
+        match self.ends.stored(t) {
+            Some(ring) => Ok(vec![ring]),
+            None => Ok(vec![self.ends.ring(t, &self.lengths, &self.closed(t)?)]),
         }
-        let turned = |direction: &mut f64, turn: &f64| {
-            *direction += turn;
-            Some(*direction)
-        };
-        let mut directions: Vec<f64> = self.closed(t)?.iter().scan(0.0, turned).collect();
-        let mean: f64 = self.lengths.iter().zip(&directions).map(|(length, direction)| length * direction).sum();
-        let shift = self.source.mean_direction() + t * self.rotation - mean;
-        directions.iter_mut().for_each(|direction| *direction += shift);
-        let perimeter = mix(t, self.source.perimeter, self.target.perimeter);
-        Ok(vec![ring_of_edges(&self.lengths, &directions, perimeter, place_at(t, &self.source, &self.target))])
     }
 }
 

@@ -5,6 +5,7 @@
 //! | [`LinearPath`] | rings with corresponding vertices | edges parallel where they are parallel in both |
 //! | [`LengthsAndAngles`] | one ring with corresponding vertices | turning angles linear, lengths nearly so |
 //! | [`CurvatureBlend`] | two sampled closed curves | curvature nearly linear, length linear |
+//! | [`CurvaturePath`] | one ring with corresponding vertices | parts of the length linear, turning angles nearly so |
 //! | [`SimplePath`] | rings with corresponding vertices, one hole at most | shapes simple |
 //! | [`StraightPolyhedra`] | two polyhedra with the same triangles | edges parallel where they are parallel in both |
 //! | [`TurningPolyhedra`] | the same | rotations of triangles even, stretches linear, nearly so |
@@ -26,11 +27,13 @@
 //! # Ok::<(), homeo::shape::ShapeError>(())
 //! ```
 
+mod bent;
 mod blend;
 mod closing;
 mod combinations;
 mod compatible;
 mod curvature;
+mod curvature_path;
 mod lengths_and_angles;
 mod linear;
 mod polyhedron;
@@ -42,6 +45,8 @@ mod spline;
 mod turning;
 
 #[cfg(test)]
+mod curvature_path_tests;
+#[cfg(test)]
 mod polyhedron_tests;
 #[cfg(test)]
 mod tests;
@@ -49,6 +54,7 @@ mod tests;
 pub use blend::CurvatureBlend;
 pub use compatible::CompatibleError;
 pub use curvature::{CurvatureProfile, sample_closed};
+pub use curvature_path::CurvaturePath;
 pub use lengths_and_angles::LengthsAndAngles;
 pub use linear::LinearPath;
 pub use polyhedron::{PolyhedronPath, PolyhedronPathError, StraightPolyhedra, TurningPolyhedra};

@@ -97,6 +97,29 @@ impl ClosedSpline {
         &self.control
     }
 
+    /// The same curve in Bezier pieces (#C by 4 by 2), as drawings hold it: one for each interval between knots, in order,
+    /// each beginning where the one before ends, bit for bit.
+    ///
+    /// With control points `p, q, r, s` a piece is `(p + 4q + r) / 6, (2q + r) / 3, (q + 2r) / 3, (q + 4r + s) / 6`: an
+    /// identity of polynomials, so that nothing but rounding is lost.
+    ///
+    /// # Example
+    /// ```
+    /// use homeo::shape::ClosedSpline;
+    /// let spline = ClosedSpline::new(vec![[3.0, 0.0], [0.0, 3.0], [-3.0, 0.0], [0.0, -3.0]])?;
+    /// let pieces = spline.bezier_pieces();
+    /// assert_eq!(pieces[0], [[0.0, 2.0], [-1.0, 2.0], [-2.0, 1.0], [-2.0, 0.0]]);
+    /// assert_eq!(pieces[3][3], pieces[0][0]);
+    /// # Ok::<(), homeo::shape::SplineError>(())
+    /// ```
+    pub fn bezier_pieces(&self) -> Vec<[[f64; 2]; 4]> {
+        let n = self.control.len();
+        let at = |i: usize| self.control[i % n];
+        let knot = |i: usize| [0, 1].map(|k| (at(i)[k] + 4.0 * at(i + 1)[k] + at(i + 2)[k]) / 6.0);
+        let third = |q: [f64; 2], r: [f64; 2]| [0, 1].map(|k| (2.0 * q[k] + r[k]) / 3.0);
+        (0..n).map(|i| [knot(i), third(at(i + 1), at(i + 2)), third(at(i + 2), at(i + 1)), knot(i + 1)]).collect()
+    }
+
     /// Point, first and second derivative. Parameters outside of 0 to 1 run on.
     pub fn at(&self, parameter: f64) -> [[f64; 2]; 3] {
         let n = self.control.len();

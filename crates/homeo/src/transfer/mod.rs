@@ -7,16 +7,23 @@
 //!              decided exactly; every value has a [`Status`].
 //! Arithmetic:  exact decisions; places, areas and values are rounded, at the end.
 //! Cost:        that of the overlay.
+//!
+//! [`transfer_across`] does the same between two disks that are mapped onto one shape, by the exact composite of the maps
+//! at vertices and middles; there is no overlay of these.
 
+mod across;
 mod correspondence;
 mod faces;
+mod places;
 mod points;
 
 use homeo_core::io::{Attribute, Element, Values};
 
-use crate::map::Shell;
+use crate::input::SourceMesh;
+use crate::map::{EvaluationError, Shell, Target};
 use crate::progress::Progress;
 
+pub use across::transfer_across;
 use correspondence::Correspondence;
 
 /// What a value on the section rests on.
@@ -88,6 +95,22 @@ pub enum TransferError {
     /// A density is no floating-point attribute of polygons.
     #[error("\"{0}\" is no floating-point attribute of triangles, so there is no mass to conserve")]
     NoDensity(String),
+    /// Two maps do not lead to one shape.
+    #[error("the maps lead to the {from} and the {onto}: make one of them anew onto the other's shape")]
+    Targets {
+        /// Where the source of the attributes is mapped.
+        from: Target,
+        /// Where the other mesh is mapped.
+        onto: Target,
+    },
+    /// A point has no image, or no triangle was found on its side: a map comes from a damaged file.
+    #[error("triangle {triangle} has a point without an image ({reason}): check both maps with `homeo verify`")]
+    NoImage {
+        /// The triangle of the mesh to transfer to.
+        triangle: usize,
+        /// Why.
+        reason: EvaluationError,
+    },
     /// Stopped from outside.
     #[error("stopped")]
     Cancelled,
@@ -112,7 +135,7 @@ pub fn transfer(
     progress: &(dyn Progress + Sync),
 ) -> Result<Vec<Transferred>, TransferError> {
     let section = shell.section().ok_or(TransferError::NoSection)?;
-    attributes.iter().try_for_each(|attribute| check_rows(shell, attribute))?;
+    attributes.iter().try_for_each(|attribute| check_rows(shell.source(), attribute))?;
     let is_density = |attribute: &Attribute| {
         attribute.element == Element::Polygon && matches!(attribute.values, Values::F64(_) | Values::F32(_))
     };
@@ -145,10 +168,10 @@ pub fn transfer(
     Ok(attributes.iter().filter_map(moved).collect())
 }
 
-fn check_rows(shell: &Shell, attribute: &Attribute) -> Result<(), TransferError> {
-    let triangles = shell.source().complex().cell_count();
+fn check_rows(source: &SourceMesh<3>, attribute: &Attribute) -> Result<(), TransferError> {
+    let triangles = source.complex().cell_count();
     let expected = match attribute.element {
-        Element::Vertex => shell.source().positions().len(),
+        Element::Vertex => source.positions().len(),
         Element::Polygon => triangles,
         Element::Corner => 3 * triangles,
         Element::Tetrahedron => return Ok(()),

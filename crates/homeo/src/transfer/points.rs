@@ -7,6 +7,7 @@ use homeo_core::io::{Attribute, Values};
 
 use super::correspondence::{At, Correspondence, Side};
 use super::{Status, Transferred, has_no_number, is_label, is_same_row};
+use crate::input::SourceMesh;
 
 /// Values at the vertices of the section.
 pub(super) fn at_vertices(known: &Correspondence, attribute: &Attribute) -> Transferred {
@@ -19,15 +20,28 @@ pub(super) fn at_vertices(known: &Correspondence, attribute: &Attribute) -> Tran
             }
         }
     }
-    let rows = |at: &At| known.source.complex().cells()[at.triangle as usize].map(|v| v.index());
-    evaluated(attribute, &places, rows)
+    read_at_vertices(known.source, attribute, &places)
+}
+
+/// The values of an attribute of vertices at some places of the source.
+pub(super) fn read_at_vertices(source: &SourceMesh<3>, attribute: &Attribute, places: &[Option<At>]) -> Transferred {
+    evaluated(attribute, places, |at| source.complex().cells()[at.triangle as usize].map(|v| v.index()))
+}
+
+/// The values of an attribute of corners at some places of the source, each from the side of its triangle.
+pub(super) fn read_at_corners(attribute: &Attribute, places: &[Option<At>]) -> Transferred {
+    evaluated(attribute, places, |at| [0, 1, 2].map(|k| 3 * at.triangle as usize + k))
+}
+
+/// The values of an attribute of triangles at those of some places.
+pub(super) fn read_at_triangles(attribute: &Attribute, places: &[Option<At>]) -> Transferred {
+    evaluated(attribute, places, |at| [at.triangle as usize; 3])
 }
 
 /// Values at the corners of the section's triangles, each from the side of its triangle.
 pub(super) fn at_corners(known: &Correspondence, attribute: &Attribute) -> Transferred {
-    let rows = |at: &At| [0, 1, 2].map(|k| 3 * at.triangle as usize + k);
-    let mut moved = evaluated(attribute, known.corners.as_flattened(), rows);
-    let seams = Seams::new(known, attribute);
+    let mut moved = read_at_corners(attribute, known.corners.as_flattened());
+    let seams = Seams::new(known.source, attribute);
     for (triangle, crossed) in known.crossed.iter().enumerate() {
         if crossed.iter().any(|&side| seams.is_seam(side)) {
             moved.status[3 * triangle..3 * triangle + 3].fill(Status::Split);
@@ -37,33 +51,55 @@ pub(super) fn at_corners(known: &Correspondence, attribute: &Attribute) -> Trans
 }
 
 /// Where an attribute of corners jumps from one triangle to the next.
-struct Seams<'k> {
-    known: &'k Correspondence<'k>,
+pub(super) struct Seams<'k> {
+    source: &'k SourceMesh<3>,
     attribute: &'k Attribute,
     /// The sides across which triangles meet.
     beyond: HashMap<[u32; 2], Side>,
 }
 
 impl<'k> Seams<'k> {
-    fn new(known: &'k Correspondence<'k>, attribute: &'k Attribute) -> Self {
+    pub fn new(source: &'k SourceMesh<3>, attribute: &'k Attribute) -> Self {
         let mut beyond = HashMap::new();
-        for (t, cell) in known.source.complex().cells().iter().enumerate() {
+        for (t, cell) in source.complex().cells().iter().enumerate() {
             for k in 0..3 {
                 let [a, b] = [1, 2].map(|i| cell[(k + i) % 3].raw());
                 beyond.insert([a, b], (t as u32, k));
             }
         }
-        Self { known, attribute, beyond }
+        Self { source, attribute, beyond }
     }
 
     /// Whether the values at the ends of a side differ from those of the triangle beyond; also where there is none.
-    fn is_seam(&self, (triangle, k): Side) -> bool {
-        let cell = self.known.source.complex().cells()[triangle as usize];
+    fn is_seam(&self, side: Side) -> bool {
+        self.across(side).is_none()
+    }
+
+    /// The triangle beyond a side, unless there is a seam.
+    fn across(&self, (triangle, k): Side) -> Option<u32> {
+        let cell = self.source.complex().cells()[triangle as usize];
         let [a, b] = [1, 2].map(|i| (k + i) % 3);
-        let Some(&(other, l)) = self.beyond.get(&[cell[b].raw(), cell[a].raw()]) else { return true };
+        let &(other, l) = self.beyond.get(&[cell[b].raw(), cell[a].raw()])?;
         let row = |triangle: u32, corner: usize| 3 * triangle as usize + corner;
         let is_same = |p: usize, q: usize| is_same_row(self.attribute, row(triangle, p), row(other, q));
-        !(is_same(a, (l + 2) % 3) && is_same(b, (l + 1) % 3))
+        (is_same(a, (l + 2) % 3) && is_same(b, (l + 1) % 3)).then_some(other)
+    }
+
+    /// The chart of each triangle: triangles that meet across other sides than seams are in one.
+    pub fn charts(&self) -> Vec<usize> {
+        let count = self.source.complex().cell_count();
+        let mut charts = vec![usize::MAX; count];
+        for first in 0..count {
+            let mut waiting = vec![first as u32];
+            while let Some(triangle) = waiting.pop() {
+                if charts[triangle as usize] != usize::MAX {
+                    continue;
+                }
+                charts[triangle as usize] = first;
+                waiting.extend((0..3).filter_map(|k| self.across((triangle, k))));
+            }
+        }
+        charts
     }
 }
 
