@@ -35,12 +35,12 @@
   const layers = scene.layers, turns = 2 * Math.PI, count = 1 + disks.reduce((a, b) => Math.max(a, b), 0);
   const palette = [[214, 69, 65], [42, 127, 184], [46, 148, 83], [137, 84, 168], [196, 130, 20], [20, 150, 150]].map((c) => c.map((x) => x / 255));
   const hue = (cut) => (scene.cuts.length > 1 ? palette[cut % palette.length] : palette[0]);
-  const state = { bend: 1, fibres: true, disk: true, section: true, arrows: true, cuts: true, picked: Math.floor(triangles.length / 6 / 2), };
+  const state = { bend: 1, fibres: true, disk: true, section: true, arrows: true, cuts: true, picked: Math.floor(triangles.length / 12) };
 
   // Over a point of a disk, at a height in levels: a prism at bend 0, a solid torus at bend 1.
   function over(vertex, height, x, y) {
     const disk = disks[vertex], at = x === undefined ? [plane[3 * vertex], plane[3 * vertex + 1]] : [x, y];
-    const size = count > 1 ? 0.3 : 0.42, length = size * (2.6 * (1 - state.bend) + turns * 2 * state.bend);
+    const size = count > 1 ? 0.31 : 0.42, length = size * (2.6 * (1 - state.bend) + turns * 2 * state.bend);
     const s = (height / layers - (state.bend < 1 ? 0.5 : 0)) * length, bow = (state.bend * turns) / length;
     let p = [size * at[0], size * at[1], s];
     if (bow > 1e-6) {
@@ -50,7 +50,7 @@
       p = [p[0], p[2], p[1]];
     }
     if (bow > 1e-6 && state.bend < 1) p = [p[0], p[2] * (1 - state.bend) + p[1] * state.bend, p[1] * (1 - state.bend) + p[2] * state.bend];
-    return count > 1 ? add(p, [disk ? 0.98 : -0.98, 0, 0]) : p;
+    return count > 1 ? add(p, [0, disk ? -0.62 : 0.62, 0]) : p;
   }
 
   const viewer = document.getElementById("viewer");
@@ -132,11 +132,12 @@
       gl.depthMask(true);
       labels.textContent = "";
       for (const mark of marks) {
-        const [x, y] = seen(mark.at), label = labels.appendChild(document.createElement("span"));
+        const [x, y, far] = seen(mark.at), label = labels.appendChild(document.createElement("span"));
         label.textContent = (mark.index > 0 ? "+" : "−") + Math.abs(mark.index);
         if (!mark.index) label.textContent = "0";
+        label.style.opacity = far > 4.25 ? 0.35 : 1;
         label.title = mark.name;
-        label.style.cssText = `position:absolute;left:${x + 7}px;top:${y - 20}px;font-weight:700;font-size:14px;pointer-events:none;text-shadow:0 0 3px var(--card),0 0 3px var(--card)`;
+        label.style.cssText += `;position:absolute;left:${x + 7}px;top:${y - 20}px;font-weight:700;font-size:14px;pointer-events:none;text-shadow:0 0 3px var(--card),0 0 3px var(--card)`;
       }
     }
     function fill(list, signs = []) {
@@ -183,7 +184,7 @@
     return { fill, draw, seen, onClick: (given) => (click = given) };
   }
   const left = pane("The surface", [-0.4, 0.75]);
-  const right = pane(count > 1 ? "Two solid tori, to be glued" : "The solid torus over the disk", [-0.15, 0.7]);
+  const right = pane(count > 1 ? "Two solid tori, to be glued" : "The solid torus over the disk", [-0.15, count > 1 ? 0.45 : 0.7]);
 
   // Lists of points and colours.
   const batch = (more) => ({ points: [], colours: [], ...more });
@@ -253,13 +254,13 @@
     const shell = batch({ lines: true }), floor = batch({ normals: [], clear: true }), rims = batch({ normals: [] }), thin = batch({ lines: true });
     const steps = 96, heights = Array.from({ length: steps + 1 }, (_, k) => (layers * k) / steps);
     if (scene.boundary) {
-      const boundary = array(scene.boundary);
+      const boundary = array(scene.boundary), sparse = Math.ceil(boundary.length / 3 / (40 * count));
       for (let k = 0; k < boundary.length; k += 3) {
         const [a, b, cut] = [boundary[k], boundary[k + 1], boundary[k + 2]];
         tube(rims, [over(a, 0), over(b, 0)], 0.008, hue(cut));
         if (state.bend < 1) tube(rims, [over(a, layers), over(b, layers)], 0.008, hue(cut));
-        for (let level = 0; level < layers; level++) stroke(shell, [over(a, level), over(b, level)], hue(cut), 0.28);
-        stroke(shell, heights.map((h) => over(a, h)), hue(cut), 0.4);
+        for (let level = 0; level < layers; level++) stroke(shell, [over(a, level), over(b, level)], hue(cut), 0.16);
+        if ((k / 3) % sparse === 0) stroke(shell, heights.map((h) => over(a, h)), hue(cut), 0.35);
       }
     }
     if (state.disk) for (let t = 0; t < corners.length / 3; t++) {
@@ -286,7 +287,7 @@
         const at = (s) => { const h = from + (to - from) * s, x = (i) => plane[3 * a + i] * (1 - s) + plane[3 * b + i] * s; return over(a, state.bend < 1 ? ((h % layers) + layers) % layers : h, x(0), x(1)); };
         for (let s = 0; s < parts; s++) {
           const [p, q] = [at(s / parts), at((s + 1) / parts)];
-          if (Math.hypot(...add(p, q, -1)) < 0.6) stroke(lines, [p, q], gold, 0.55);
+          if (Math.hypot(...add(p, q, -1)) < 0.6) stroke(lines, [p, q], gold, ends.length > 2000 ? 0.4 : 0.7);
         }
       }
       list.push(lines);

@@ -15,7 +15,7 @@ use std::io::{self, Write};
 const VIEWER: &str = include_str!("bundle.js");
 /// Paths beyond this are not drawn.
 const MOST_PATHS: usize = 60_000;
-const CAPTION: &str = "Left the surface with the paths along which it is cut; right the bundle over each disk that is left: a solid torus, disk times circle, cut open at level 0 when it is unrolled. A path has the same colour on the surface and on the tori, where both its sides are seen. Click on a triangle: the circle round it is the fibre over its middle, all unit tangent vectors there, and the same fibre is drawn in its solid torus; a dot on both is level 0 of the disk's frame. Drag to turn, scroll to come nearer.";
+const CAPTION: &str = "Left the surface with the paths along which it is cut; right the bundle over each disk that is left: a solid torus, disk times circle, cut open at level 0 when it is unrolled. A path has the same colour on the surface and on the tori, where both its sides are seen. Click on a triangle: the circle round it is the fibre over its middle, all unit tangent vectors there, and the same fibre is drawn in its solid torus. Drag to turn, scroll to come nearer.";
 const SPHERE: &str = " The two solid tori are glued along their boundaries to projective space, which has no place in three dimensions: the dark curve on the second bounds a disk in the first (level 0 there), and winds twice round the fibres of the second while it goes once round the disk.";
 const TORUS: &str =
     " Unrolled, the prism is a room of the 3-torus: floor and ceiling are glued, and walls of the same colour.";
@@ -105,8 +105,8 @@ pub fn write_bundle_page(report: &BundleReport, out: &mut impl Write) -> io::Res
     writeln!(out, "</section>\n<p class=\"caption\">{CAPTION}{special}{field}</p>\n<div class=\"columns\">")?;
     write_claim(report.verdict, out)?;
     let drawn = "That this picture is exact: disks are laid out in floating point with their vertices at means of their neighbours, \
-                 places are rounded to 16 bits, and circles stand for the directions that levels name, without the turns by which \
-                 the frame of a disk differs from one on the surface. Of fields with more than 60,000 edges a part is drawn.";
+                 places are rounded to 16 bits, and the circle on the surface has no marks for levels. Of sections with more than 60,000 paths a part is drawn, and of fields \
+                 about 2,500 arrows.";
     write_limit_list(&report.verdict.limits, drawn, out)?;
     write_facts(report.facts, report.stage_seconds, out)?;
     out.write_all(b"</div>\n</main>\n<footer>This page is self-contained and loads nothing from the network. The picture is a display; the claim rests on the mesh, which <code>homeo verify</code> checks as a certificate.</footer>\n")?;
@@ -249,4 +249,53 @@ fn section_lines(tangent: &TangentBundle, charts: &Charts, paths: &[Vec<u32>]) -
         }
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use homeo_manifold::bundle::Section;
+
+    const SPHERE: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    const PLACES: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+    fn page(vectors: &[[f64; 3]]) -> io::Result<String> {
+        let tangent = TangentBundle::new(&SPHERE, 4, 6).expect("a bundle");
+        let section = Section::of_field(&tangent, &PLACES, &[[0.3, -0.2, 0.9]; 4]).expect("a section");
+        let paths = section.paths();
+        let report = BundleReport {
+            title: "a <b>",
+            subtitle: "test",
+            verdict: &VerdictWords { holds: true, ..VerdictWords::default() },
+            tangent: &tangent,
+            positions: &PLACES,
+            triangles: &SPHERE,
+            field: Some(FieldPicture { vectors, triangles: &[(0, 2)], vertices: &[], paths: &paths }),
+            facts: &[],
+            stage_seconds: &[],
+        };
+        let mut page = Vec::new();
+        write_bundle_page(&report, &mut page)?;
+        Ok(String::from_utf8(page).expect("text"))
+    }
+
+    /// The curve that is glued to the boundary of a disk winds once round it and twice round the fibres.
+    #[test]
+    fn the_page_is_whole_and_its_seam_winds_twice() {
+        let page = page(&[[0.3, -0.2, 0.9]; 4]).expect("a page");
+        assert!(page.contains("<h1>a &lt;b&gt;</h1>"));
+        assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("src="), "no network");
+        let json = page.split("id=\"homeo-scene\">").nth(1).and_then(|rest| rest.split("</script>").next());
+        let scene: Value = serde_json::from_str(json.expect("data")).expect("JSON");
+        let seam = scene["seam"].as_array().expect("a seam");
+        let height = |at: usize| seam[at][1].as_i64().expect("a height");
+        assert_eq!(seam[0][0], seam[seam.len() - 1][0]);
+        assert_eq!((height(seam.len() - 1) - height(0)).abs(), 2 * 6);
+        assert_eq!(scene["field"]["singular"][0]["index"], 2);
+    }
+
+    #[test]
+    fn vectors_of_another_number_are_refused() {
+        assert!(page(&[[0.0; 3]; 3]).is_err());
+    }
 }
