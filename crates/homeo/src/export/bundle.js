@@ -35,21 +35,22 @@
   const layers = scene.layers, turns = 2 * Math.PI, count = 1 + disks.reduce((a, b) => Math.max(a, b), 0);
   const palette = [[214, 69, 65], [42, 127, 184], [46, 148, 83], [137, 84, 168], [196, 130, 20], [20, 150, 150]].map((c) => c.map((x) => x / 255));
   const hue = (cut) => (scene.cuts.length > 1 ? palette[cut % palette.length] : palette[0]);
-  const state = { bend: 1, fibres: true, disk: true, section: true, arrows: true, cuts: true, picked: Math.floor(triangles.length / 12) };
+  const state = { bend: scene.genus === 1 ? 0 : 1, fibres: true, disk: true, section: true, arrows: true, cuts: true, picked: Math.floor(triangles.length / 12) };
 
   // Over a point of a disk, at a height in levels: a prism at bend 0, a solid torus at bend 1.
   function over(vertex, height, x, y) {
     const disk = disks[vertex], at = x === undefined ? [plane[3 * vertex], plane[3 * vertex + 1]] : [x, y];
-    const size = count > 1 ? 0.31 : 0.42, length = size * (2.6 * (1 - state.bend) + turns * 2 * state.bend);
-    const s = (height / layers - (state.bend < 1 ? 0.5 : 0)) * length, bow = (state.bend * turns) / length;
+    const size = (count > 1 ? 0.31 : 0.42) * (count > 1 ? 1 : 1.8 - 0.8 * state.bend);
+    const length = size * (2.6 * (1 - state.bend) + turns * 2 * state.bend);
+    const s = (height / layers - 0.5) * length, bow = (state.bend * turns) / length;
     let p = [size * at[0], size * at[1], s];
     if (bow > 1e-6) {
       const radius = 1 / bow + p[0];
       p = [radius * Math.cos(bow * s) - (1 - state.bend) / bow, p[1], radius * Math.sin(bow * s)];
-    } else {
-      p = [p[0], p[2], p[1]];
     }
-    if (bow > 1e-6 && state.bend < 1) p = [p[0], p[2] * (1 - state.bend) + p[1] * state.bend, p[1] * (1 - state.bend) + p[2] * state.bend];
+    // The prism stands upright, the torus lies.
+    const [c, d] = [Math.cos(((1 - state.bend) * Math.PI) / 2), Math.sin(((1 - state.bend) * Math.PI) / 2)];
+    p = [p[0], p[1] * c + p[2] * d, p[2] * c - p[1] * d];
     return count > 1 ? add(p, [0, disk ? -0.62 : 0.62, 0]) : p;
   }
 
@@ -184,7 +185,7 @@
     return { fill, draw, seen, onClick: (given) => (click = given) };
   }
   const left = pane("The surface", [-0.4, 0.75]);
-  const right = pane(count > 1 ? "Two solid tori, to be glued" : "The solid torus over the disk", [-0.15, count > 1 ? 0.45 : 0.7]);
+  const right = pane(count > 1 ? "Two solid tori, to be glued" : "The solid torus over the disk, rolled up or unrolled", [-0.15, count > 1 ? 0.45 : 0.7]);
 
   // Lists of points and colours.
   const batch = (more) => ({ points: [], colours: [], ...more });
@@ -293,11 +294,12 @@
       list.push(lines);
     }
     const bold = batch({ normals: [] });
-    if (scene.seam.length) tube(bold, scene.seam.flatMap(([v, h], k) => {
-      if (k + 1 === scene.seam.length) return [over(v, h)];
-      const [w, g] = scene.seam[k + 1];
-      return [0, 0.5].map((s) => over(v, h + (g - h) * s, plane[3 * v] * (1 - s) + plane[3 * w] * s, plane[3 * v + 1] * (1 - s) + plane[3 * w + 1] * s));
-    }), 0.012, ink);
+    for (let k = 0; k + 1 < scene.seam.length; k++) {
+      const [[v, h], [w, g]] = [scene.seam[k], scene.seam[k + 1]];
+      // Unrolled, a piece from the ceiling on goes on at the floor.
+      const down = state.bend < 1 ? Math.floor(Math.min(h, g) / layers) * layers : 0;
+      tube(bold, [over(v, h - down), over(w, g - down)], 0.012, ink);
+    }
     const c = [0, 1, 2].map((k) => corners[3 * state.picked + k]), middle = [0, 1].map((i) => c.reduce((sum, v) => sum + plane[3 * v + i] / 3, 0));
     tube(bold, heights.map((h) => over(c[0], h, ...middle)), 0.012, fibreColour);
     right.fill([...list, bold, floor]);
@@ -326,7 +328,7 @@
     return input;
   }
   const slider = document.createElement("input");
-  Object.assign(slider, { type: "range", min: 0, max: 1, step: 0.01, value: 1 });
+  Object.assign(slider, { type: "range", min: 0, max: 1, step: 0.01, value: state.bend });
   row("slider", "roll up", slider).addEventListener("input", () => { state.bend = Number(slider.value); solidTori(); });
   const boxes = [["cuts", "paths of the cut"], ["disk", "level 0 of the frame"], ["fibres", "some fibres"]];
   if (scene.field) boxes.push(["arrows", "field"], ["section", "section"]);
