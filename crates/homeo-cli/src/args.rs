@@ -423,6 +423,7 @@ pub struct PlArgs {
   homeo bundle testdata/meshes/torus.obj -o torus_bundle.json
   homeo bundle testdata/meshes/torus.obj --layers 5 -o torus_bundle.homeo
   homeo verify torus_bundle.homeo
+  homeo bundle testdata/meshes/torus.obj --field testdata/fields/torus_height.csv --report torus_bundle.html
 
 Vertex v * layers + level of the mesh lies on that level of the circle over vertex v of the base, which is MESH with
 some edges split where it was too coarse. That the mesh is the bundle is checked before anything is written.
@@ -434,6 +435,15 @@ pub struct BundleArgs {
     /// Tetrahedra as .json, a certificate as .homeo, or a mesh format for volumes (.mesh, .msh, .vtk, .vtu)
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+    /// A field of vectors to be made a section: the name of one at the vertices of MESH, or a file .csv or .npy of them
+    #[arg(long, value_name = "FIELD")]
+    pub field: Option<String>,
+    /// The surface with the indices of the field at its triangles and vertices (.ply, .vtk, .vtu)
+    #[arg(long, value_name = "SURFACE", requires = "field")]
+    pub indices: Option<PathBuf>,
+    /// A page with pictures and what was proved, for a browser
+    #[arg(long, value_name = "PAGE.html")]
+    pub report: Option<PathBuf>,
     /// Edges of the circle over each vertex
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(3..))]
     pub layers: u32,

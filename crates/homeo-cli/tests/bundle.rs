@@ -108,3 +108,68 @@ fn what_is_no_closed_oriented_surface_is_refused_with_its_elements() {
         folder.line(line).expect(2);
     }
 }
+
+/// The field of a constant vector on a torus, and its section as it is written: each fibre is met once, paths are paths of
+/// edges, and indices add up to 0.
+#[test]
+fn fields_become_sections() {
+    let folder = Folder::new();
+    let vectors = |count: usize| format!("x,y,z\n{}", "1,0.31,0.17\n".repeat(count));
+    folder.write("m.obj", torus(9, 7)).write("f.csv", vectors(63)).write("short.csv", vectors(62));
+    let report = folder
+        .line("bundle m.obj --layers 5 --field f.csv -o b.json --indices i.vtu --report p.html --json -q")
+        .expect(0)
+        .json();
+    let field = &report["field"];
+    assert_eq!((&field["sum"], &field["euler_characteristic"]), (&0.into(), &0.into()));
+    let singular = field["singular_triangles"].as_array().unwrap();
+    let squares: i64 = singular.iter().map(|one| one["index"].as_i64().unwrap().pow(2)).sum();
+    assert!(squares >= 4, "{field}");
+    let json: Value = serde_json::from_str(&folder.text("b.json")).unwrap();
+    let edges: std::collections::HashSet<[u64; 2]> = rows::<4>(&json["tets"])
+        .iter()
+        .flat_map(|four| four.iter().flat_map(|&a| four.iter().map(move |&b| [u64::from(a), u64::from(b)])))
+        .collect();
+    let levels = json["section"]["levels"].as_array().unwrap();
+    assert_eq!(levels.len() * 5, json["vertices"].as_u64().unwrap() as usize);
+    let mut count = 0;
+    for path in json["section"]["paths"].as_array().unwrap() {
+        let path: Vec<u64> = path.as_array().unwrap().iter().map(|v| v.as_u64().unwrap()).collect();
+        assert!(path.windows(2).all(|step| edges.contains(&[step[0], step[1]])), "{path:?}");
+        for end in [path[0], path[path.len() - 1]] {
+            assert_eq!(levels[end as usize / 5], end % 5);
+        }
+        count += 1;
+    }
+    assert_eq!(count, json["base"].as_array().unwrap().len() * 3 / 2);
+    let surface = homeo_core::io::read_mesh(&folder.path("i.vtu")).unwrap();
+    assert!(surface.attributes.iter().any(|attribute| attribute.name == "index"));
+    assert!(folder.text("p.html").contains("sum of its indices"));
+    // The field that the surface carries now gives the same.
+    let again = folder.line("bundle i.vtu --layers 5 --field field --json -q").expect(0).json();
+    assert_eq!(again["field"]["singular_triangles"], field["singular_triangles"]);
+    folder.line("bundle m.obj --layers 5 --field f.csv -o b.vtu -q").expect(0);
+    let mesh = homeo_core::io::read_mesh(&folder.path("b.vtu")).unwrap();
+    let section = mesh.attributes.iter().find(|attribute| attribute.name == "section").unwrap();
+    let homeo_core::io::Values::I64(met) = &section.values else { panic!("{section:?}") };
+    assert!(met.chunks(5).all(|fibre| fibre.iter().sum::<i64>() == 1));
+}
+
+#[test]
+fn fields_that_do_not_fit_are_refused() {
+    let folder = Folder::new();
+    folder
+        .write("m.obj", torus(5, 4))
+        .write("short.csv", "x,y,z\n1,2,3\n")
+        .write("zero.csv", format!("x,y,z\n{}", "0,0,0\n".repeat(20)));
+    for (name, word) in [("short.csv", "20 vertices"), ("zero.csv", "neighbours"), ("wind", "no field of the name")] {
+        let report = folder.line(&format!("bundle m.obj --field {name} -o b.json --json -q")).expect(3).json();
+        assert_eq!(report["error"]["code"], "unfit-field");
+        let message = report["error"]["message"].as_str().unwrap();
+        assert!(message.contains(word), "{message}");
+    }
+    assert!(!folder.names().contains(&"b.json".to_owned()));
+    for line in ["bundle m.obj --indices i.ply", "bundle m.obj --field zero.csv --indices i.obj"] {
+        folder.line(line).expect(2);
+    }
+}

@@ -10,6 +10,7 @@ use homeo_manifold::write_record;
 use serde_json::{Value, json};
 
 use super::Made;
+use super::field::FieldSection;
 use crate::failure::{Failure, Result};
 use crate::outputs::Outputs;
 use crate::session::Session;
@@ -80,6 +81,32 @@ pub fn stage(
     Ok(())
 }
 
+/// The format of a surface that holds fields at triangles.
+///
+/// # Errors
+/// Wrong usage for any other.
+pub fn surface_format(path: &Path) -> Result<Format> {
+    match Format::of_path(path) {
+        Some(format @ (Format::Ply | Format::Vtk | Format::Vtu)) => Ok(format),
+        _ => Err(Failure::usage(format!("{}: give .ply, .vtk or .vtu", path.display()))),
+    }
+}
+
+/// Stages the surface with its fields.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn stage_surface(
+    session: &Session,
+    path: &Path,
+    format: Format,
+    mesh: &MeshFile,
+    outputs: &mut Outputs,
+) -> Result<()> {
+    let write = |out: &mut BufWriter<std::fs::File>| write_mesh_to(out, format, mesh, &WriteOptions::default());
+    outputs.stage(session, path, |out| write(out).map(|_| ()).map_err(|e| e.to_string())).map(|_| ())
+}
+
 /// One row on each line, so that large files can be read by eye and compared.
 fn write_tetrahedra(made: &Made, out: &mut BufWriter<std::fs::File>) -> std::io::Result<()> {
     let bundle = &made.tangent.bundle;
@@ -93,8 +120,24 @@ fn write_tetrahedra(made: &Made, out: &mut BufWriter<std::fs::File>) -> std::io:
     write_rows(out, "base", bundle.triangles())?;
     write_rows(out, "slopes", bundle.slopes())?;
     write_rows(out, "parents", &made.tangent.parents.iter().map(|&parent| [parent]).collect::<Vec<_>>())?;
+    if let Some(field) = &made.field {
+        write_section(field, out)?;
+    }
     write_rows(out, "tets", &made.tetrahedra)?;
     writeln!(out, "\n}}")
+}
+
+/// The levels of a section, null where there is none, its paths over edges, and its indices on the surface that was read.
+fn write_section(field: &FieldSection, out: &mut BufWriter<std::fs::File>) -> std::io::Result<()> {
+    let levels = field.levels.iter().map(|level| level.map_or(Value::Null, Value::from)).collect::<Value>();
+    let pairs =
+        |list: &[(u32, i64)]| json!(list.iter().map(|&(element, index)| json!([element, index])).collect::<Vec<_>>());
+    write!(out, ",\n\"section\": {{\"levels\": {levels}, \"singular_triangles\": {}, ", pairs(&field.triangles))?;
+    write!(out, "\"singular_vertices\": {}, \"paths\": [", pairs(&field.vertices))?;
+    for (number, path) in field.paths.iter().enumerate() {
+        write!(out, "{}\n{path:?}", if number == 0 { "" } else { "," })?;
+    }
+    write!(out, "]}}")
 }
 
 fn write_rows<const K: usize>(
@@ -134,5 +177,13 @@ fn mesh(made: &Made, positions: &[[f64; 3]]) -> MeshFile {
         values: Values::I64((0..made.vertex_count()).map(|vertex| of(vertex) as i64).collect()),
     };
     mesh.attributes = vec![attribute("base", &|vertex| vertex / layers), attribute("level", &|vertex| vertex % layers)];
+    if let Some(field) = &made.field {
+        let is_met = |vertex: usize| field.levels[vertex / layers] == Some((vertex % layers) as u32);
+        mesh.attributes.push(attribute("section", &|vertex| usize::from(is_met(vertex))));
+        // Three tetrahedra for each level stand over a triangle.
+        let indices = field.base_indices.iter().flat_map(|&index| std::iter::repeat_n(index, 3 * layers)).collect();
+        let (name, values) = ("index".to_owned(), Values::I64(indices));
+        mesh.attributes.push(Attribute { name, element: Element::Tetrahedron, components: 1, values });
+    }
     mesh
 }

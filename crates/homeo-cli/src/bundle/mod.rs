@@ -1,9 +1,11 @@
 //! `homeo bundle`: the unit tangent bundle of a closed surface as a mesh, with its certificate.
 
+mod field;
 mod files;
+mod page;
 mod refuse;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use homeo::certificate::{Provenance, write_bundle};
 use homeo::progress::Progress;
@@ -21,12 +23,15 @@ use crate::outputs::{Outputs, check_target};
 use crate::proof;
 use crate::session::Session;
 use crate::text::{Lines, file_name, stages};
+use field::FieldSection;
 use files::Kind;
 
 /// Makes a bundle, has it proved and stages its file.
 pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Result<Answer> {
     let kind = options.output.as_deref().map(|path| Kind::of(path, options.gluings)).transpose()?;
-    options.output.iter().try_for_each(|path| check_target(path, &[&options.input]))?;
+    let targets = [&options.output, &options.indices, &options.report];
+    targets.into_iter().flatten().try_for_each(|path| check_target(path, &[&options.input]))?;
+    let format = options.indices.as_deref().map(files::surface_format).transpose()?;
     let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
     let mesh = mesh_input::read(session, &options.input, requested)?;
     for note in mesh.changes.iter().chain(&mesh.file.losses) {
@@ -35,13 +40,17 @@ pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Re
     session.stage("check");
     let complex = refuse::unfit(session, &mesh, options.triangulate)?;
     session.check()?;
+    let vectors = options.field.as_deref().map(|name| field::vectors(name, &mesh.file)).transpose()?;
     session.stage("bundle");
     let corners: Vec<[u32; 3]> = complex.cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
     let tangent = TangentBundle::new(&corners, complex.vertex_count(), options.layers).map_err(explain)?;
     session.check()?;
     session.stage("homology");
-    let made = Made::new(tangent)?;
+    let mut made = Made::new(tangent)?;
     session.check()?;
+    if let Some(field) = options.field.as_deref().zip(vectors) {
+        made.field = Some(FieldSection::new(session, field, &made.tangent, &made.tetrahedra, &mesh.file.positions)?);
+    }
     let provenance = Provenance {
         source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
@@ -57,14 +66,27 @@ pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Re
     if let (Some(path), Some(kind)) = (&options.output, kind) {
         files::stage(session, path, kind, &made, &mesh.file.positions, outputs)?;
     }
+    if let (Some(path), Some(format), Some(field)) = (&options.indices, format, &made.field) {
+        files::stage_surface(session, path, format, &field.surface(&mesh.file.positions, &corners), outputs)?;
+    }
+    if let Some(path) = &options.report {
+        page::stage(session, path, &options.input, (&made, &mesh.file.positions, &corners), &claim, outputs)?;
+    }
     session.end_stage();
     let fields = json!({
         "target": claim.target,
         "certificate": proof::claim_json(&claim),
         "bundle": made.described(),
-        "output": options.output.as_ref().map(|path| path.display().to_string()),
+        "field": made.field.as_ref().map(|field| field.described(made.euler_number)),
+        "output": shown(&options.output),
+        "indices": shown(&options.indices),
+        "report": shown(&options.report),
     });
-    Ok(Answer::new(fields, words(session, &options.input, options.output.as_ref(), &made, &claim)))
+    Ok(Answer::new(fields, words(session, options, &made, &claim)))
+}
+
+fn shown(path: &Option<PathBuf>) -> Option<String> {
+    path.as_ref().map(|path| path.display().to_string())
 }
 
 /// A bundle and what is told of it.
@@ -74,6 +96,7 @@ struct Made {
     triangulation: Triangulation,
     euler_number: i64,
     homology: Homology,
+    field: Option<FieldSection>,
 }
 
 impl Made {
@@ -85,7 +108,7 @@ impl Made {
         let triangulation = Triangulation::from_complex(&complex).map_err(|error| bug(&error))?;
         let euler_number = tangent.bundle.euler_number().ok_or_else(|| bug(&"its base has a boundary"))?;
         let homology = Homology::new(&triangulation);
-        Ok(Self { tangent, tetrahedra, triangulation, euler_number, homology })
+        Ok(Self { tangent, tetrahedra, triangulation, euler_number, homology, field: None })
     }
 
     fn vertex_count(&self) -> usize {
@@ -119,7 +142,7 @@ fn explain(error: BundleError) -> Failure {
     }
 }
 
-fn words(session: &Session, input: &Path, output: Option<&PathBuf>, made: &Made, claim: &Claim) -> String {
+fn words(session: &Session, options: &BundleArgs, made: &Made, claim: &Claim) -> String {
     let base = &made.tangent.bundle;
     let mut lines = Lines::default();
     lines.add("certificate", proof::holds(claim));
@@ -133,10 +156,15 @@ fn words(session: &Session, input: &Path, output: Option<&PathBuf>, made: &Made,
     lines.add("base", format!("{} vertices{added}, {} triangles", base.vertex_count(), base.triangles().len()));
     lines.add("fibres", format!("{} edges each", base.layers()));
     lines.add("homology", format!("H1 = {}", made.homology));
+    made.field.iter().for_each(|field| field.tell(&mut lines));
     lines.add("time", stages(&session.seconds()));
-    match output {
-        Some(path) => lines.add("written", path.display()),
-        None => lines.add("written", "nothing: give -o FILE.json, FILE.homeo or a mesh format"),
+    let written: Vec<&PathBuf> = [&options.output, &options.indices, &options.report].into_iter().flatten().collect();
+    written.iter().for_each(|path| lines.add("written", path.display()));
+    if written.is_empty() {
+        lines.add("written", "nothing: give -o FILE.json, FILE.homeo or a mesh format");
     }
-    lines.below(&format!("unit tangent bundle of {}: a circle bundle with its Euler number, proved", input.display()))
+    lines.below(&format!(
+        "unit tangent bundle of {}: a circle bundle with its Euler number, proved",
+        options.input.display()
+    ))
 }

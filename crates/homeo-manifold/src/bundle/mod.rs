@@ -5,7 +5,8 @@
 //! | [`Walls`], [`cutting_pattern`] | which triangles meet, and how the prisms over them fall into tetrahedra |
 //! | [`CircleBundle`] | a bundle with regular structure, its tetrahedra and its Euler number |
 //! | [`TangentBundle`] | that of the unit tangent vectors of a closed surface |
-//! | [`Section`] | one level over each vertex; indices, and paths in the bundle |
+//! | [`Section`] | one level over each vertex; that of a field of vectors; indices, and paths in the bundle |
+//! | [`WoundPaths`] | indices once more, from tetrahedra and paths alone |
 //!
 //! Source: Yin 2010, chapters 5 to 7. Theory: `docs/theory/bundles.md`.
 
@@ -13,6 +14,8 @@ mod charts;
 mod circle;
 mod cutting;
 mod field;
+mod identification;
+mod polar;
 mod refine;
 mod section;
 #[cfg(test)]
@@ -20,11 +23,12 @@ mod surfaces;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod vector;
 mod walls;
 
 pub use circle::{BundleError, CircleBundle};
 pub use cutting::{Diagonal, Obstruction, cutting_pattern};
 pub use refine::Carrier;
-pub use section::{Section, SectionError};
+pub use section::{PathFault, Section, SectionError, WoundPaths};
 pub use tangent::TangentBundle;
 pub use walls::{Side, WallError, Walls};

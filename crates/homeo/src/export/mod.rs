@@ -33,6 +33,8 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
+mod bundle;
+mod chart;
 mod cover;
 mod data;
 mod facets;
@@ -53,6 +55,7 @@ mod simplify;
 #[cfg(test)]
 mod tests;
 
+pub use bundle::{BundleReport, FieldPicture, write_bundle_page};
 pub use cover::{CoverPicture, FaceKind, Model};
 pub use data::{CellList, CellMesh, Leaf, ReportData, ShellPicture, TargetShape, VerdictWords};
 pub use glb::{write_glb, write_gltf};
