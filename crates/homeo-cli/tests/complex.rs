@@ -10,7 +10,7 @@ const PAIR: &str = "--from testdata/polygons/square.json --to kite.json --method
 fn folder(corner: u32) -> Folder {
     let folder = Folder::new().with_testdata();
     folder
-        .write("kite.json", &format!("[[8, 8], [120, 8], [{corner}, {corner}], [8, 120]]"))
+        .write("kite.json", format!("[[8, 8], [120, 8], [{corner}, {corner}], [8, 120]]"))
         .write("points.csv", "x,y\n60,60\n100,30\n8,64\n");
     folder
 }
@@ -58,8 +58,8 @@ fn holes_are_kept() {
     let domain =
         |x: f64| format!("{{\"outer\": [[0,0],[8,0],[8,4],[0,4]], \"holes\": [{}, {}]}}", hole(x), hole(x + 3.0));
     let one = |x: f64| format!("{{\"outer\": [[0,0],[8,0],[8,4],[0,4]], \"inner\": {}}}", hole(x));
-    folder.write("a.json", &domain(1.0)).write("b.json", &domain(1.25));
-    folder.write("c.json", &one(1.0)).write("d.json", &one(1.25)).write("points.csv", "x,y\n0.5,0.5\n");
+    folder.write("a.json", domain(1.0)).write("b.json", domain(1.25));
+    folder.write("c.json", one(1.0)).write("d.json", one(1.25)).write("points.csv", "x,y\n0.5,0.5\n");
     let line =
         "warp points.csv --from c.json --to d.json --method complex --degree 2 -o out.csv --map ring.homeo --json";
     assert_eq!(folder.line(line).expect(0).json()["target"], "annulus");

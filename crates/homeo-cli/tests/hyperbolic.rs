@@ -127,8 +127,8 @@ fn the_canonical_decomposition_is_the_name_of_the_manifold() {
     assert_eq!(folder.line("verify out.homeo --json").expect(0).json()["certificate"], taken["certificate"]);
     // The same for a mesh of it, whose triangulation nobody asked for.
     let three = from_signature("dLQacbcjgjj").unwrap();
-    folder.write("three.mesh", &solid(&three));
-    let mesh = folder.line("hyperbolic three.mesh --json").expect(0).json();
+    folder.write("three.json", solid(&three));
+    let mesh = folder.line("hyperbolic three.json --json").expect(0).json();
     assert_eq!(&mesh["triangulation"]["signature"], name);
     assert_eq!(mesh["certificate"]["target"], "canonical-decomposition");
 }
