@@ -185,7 +185,9 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
         Kind::CompositeMeanValue => ("composite-mean-value", "theorem on composite mean value maps, rules D and C1-C3"),
         Kind::ComplexBarycentric => ("complex-barycentric", "theorem on complex maps with speeds, rules D and K1-K3"),
-        Kind::Hyperbolic if is_canonical => ("hyperbolic", "theorems on glued truncated tetrahedra and tilts, rules Y1-Y8"),
+        Kind::Hyperbolic if is_canonical => {
+            ("hyperbolic", "theorems on glued truncated tetrahedra and tilts, rules Y1-Y8")
+        }
         Kind::Hyperbolic => ("hyperbolic", "theorem on glued truncated tetrahedra, rules Y1-Y7"),
         Kind::UnitTangentBundle => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T8"),
     };

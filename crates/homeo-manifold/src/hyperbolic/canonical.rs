@@ -12,7 +12,7 @@ use super::enclosure::Enclosure;
 use super::equations::Equations;
 use super::proof::Structure;
 use crate::signature::signature;
-use crate::simplify::flips;
+use crate::simplify::{Simplifier, flips};
 use crate::skeleton::Skeleton;
 use crate::triangulation::Triangulation;
 use thiserror::Error;
@@ -78,7 +78,8 @@ pub fn is_canonical(triangulation: &Triangulation, structure: &Structure) -> boo
 /// Looks for the canonical decomposition, from a triangulation with its structure, if its cells are tetrahedra.
 ///
 /// Moves are made at faces whose tilt sums are not negative, and triangulations with a structure kept; those with the fewest
-/// such faces are gone on from first. At most `tries` triangulations are looked at; `go_on` is asked before each.
+/// such faces are gone on from first. If this leads nowhere the search begins again at another triangulation of the manifold,
+/// as by [`Simplifier`], always the same ones. At most `tries` triangulations are looked at; `go_on` is asked before each.
 ///
 /// # Guarantee
 /// What is returned has negative tilt sums at all faces: decided by enclosures. It depends on the manifold alone.
@@ -104,28 +105,32 @@ pub fn find_canonical(
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Canonical, NotCanonical> {
     let mut search = Search { seen: HashSet::from([signature(triangulation)]), waiting: BinaryHeap::new() };
-    let mut flat = None;
     search.add(triangulation.clone(), structure.clone());
-    while let Some(Candidate { triangulation, structure, faces, .. }) = search.next() {
-        let Some(&(tetrahedron, face, sum)) = faces.first() else {
-            return Ok(Canonical { triangulation, structure, tried: search.seen.len() });
-        };
-        if faces.iter().all(|(.., sum)| sum.low() <= 0.0) {
-            // No sum is surely positive: a move would only exchange such faces.
-            let (low, high) = (sum.low(), sum.high());
-            flat = flat.or(Some(NotCanonical::Undecided { tetrahedron, face, low, high }));
-            continue;
-        }
-        let faces: Vec<_> = faces.iter().map(|&(tetrahedron, face, _)| (tetrahedron, face)).collect();
-        for other in flips(&triangulation, &faces).unwrap_or_default() {
-            if search.seen.len() >= tries || !go_on() {
-                return Err(flat.unwrap_or(NotCanonical::NotFound { tried: search.seen.len() }));
+    let mut simplifier = Simplifier::new(triangulation, 1).ok();
+    for attempt in 0.. {
+        match search.run(tries, &mut go_on) {
+            Some(Candidate { triangulation, structure, faces, .. }) => match faces.first() {
+                None => return Ok(Canonical { triangulation, structure, tried: search.seen.len() }),
+                Some(&(tetrahedron, face, sum)) => {
+                    let (low, high) = (sum.low(), sum.high());
+                    return Err(NotCanonical::Undecided { tetrahedron, face, low, high });
+                }
+            },
+            None if attempt < MOST_STARTS && search.seen.len() < tries && go_on() => {
+                let other = simplifier.as_mut().map(|simplifier| match attempt {
+                    0 => simplifier.best().clone(),
+                    _ => simplifier.shaken(1 + attempt % 8),
+                });
+                other.into_iter().for_each(|other| search.try_it(other));
             }
-            search.try_it(other);
+            None => return Err(NotCanonical::NotFound { tried: search.seen.len() }),
         }
     }
-    Err(flat.unwrap_or(NotCanonical::NotFound { tried: search.seen.len() }))
+    Err(NotCanonical::NotFound { tried: search.seen.len() })
 }
+
+/// How often the search begins anew.
+const MOST_STARTS: usize = 100;
 
 /// A triangulation with a structure, and its faces whose tilt sums are not proved to be negative.
 struct Candidate {
@@ -163,8 +168,21 @@ struct Search {
 }
 
 impl Search {
-    fn next(&mut self) -> Option<Candidate> {
-        self.waiting.pop()
+    /// Goes on until there is a triangulation of which no tilt sum is surely positive.
+    fn run(&mut self, tries: usize, go_on: &mut impl FnMut() -> bool) -> Option<Candidate> {
+        while let Some(candidate) = self.waiting.pop() {
+            if candidate.faces.iter().all(|(.., sum)| sum.low() <= 0.0) {
+                return Some(candidate);
+            }
+            let faces: Vec<_> = candidate.faces.iter().map(|&(tetrahedron, face, _)| (tetrahedron, face)).collect();
+            for other in flips(&candidate.triangulation, &faces).unwrap_or_default() {
+                if self.seen.len() >= tries || !go_on() {
+                    return None;
+                }
+                self.try_it(other);
+            }
+        }
+        None
     }
 
     /// Adds a triangulation if it is new and has a structure.
