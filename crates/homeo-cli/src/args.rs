@@ -769,7 +769,7 @@ pub struct HyperbolicArgs {
     /// Take the canonical decomposition, which depends on the manifold alone, as is done for a mesh where its cells are tetrahedra
     #[arg(long)]
     pub canonical: bool,
-    /// How many other triangulations are tried before giving up
+    /// How many other triangulations are tried for a metric before giving up; ten times as many for the canonical decomposition
     #[arg(long, value_name = "N", default_value_t = 100)]
     pub tries: usize,
 }

@@ -44,7 +44,7 @@ pub fn structure(session: &Session, input: &Input, options: &HyperbolicArgs) -> 
     let mut found = any_structure(session, input, options.retriangulate, options.tries)?;
     session.stage("canonical");
     found.canonical =
-        find_canonical(&found.triangulation, &found.structure, options.tries.max(1), || session.check().is_ok());
+        find_canonical(&found.triangulation, &found.structure, 10 * options.tries.max(1), || session.check().is_ok());
     session.check()?;
     match &found.canonical {
         Ok(canonical) if options.canonical || input.is_free => {

@@ -23,7 +23,7 @@ pub fn tunnelled(paths: &[Vec<Place>]) -> (Vec<Place>, Vec<[u32; 4]>) {
                 if tunnels.contains(&[x, y, z]) {
                     continue;
                 }
-                for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+                for order in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2], [2, 1, 0]] {
                     let mut corner = [x, y, z];
                     let mut cell = [0; 4];
                     for step in 0..4 {
@@ -32,6 +32,10 @@ pub fn tunnelled(paths: &[Vec<Place>]) -> (Vec<Place>, Vec<[u32; 4]>) {
                         if step < 3 {
                             corner[order[step]] += 1;
                         }
+                    }
+                    // All turned alike.
+                    if (order[0] + 1) % 3 != order[1] {
+                        cell.swap(2, 3);
                     }
                     cells.push(cell);
                 }
