@@ -43,7 +43,7 @@ pub struct Common {
     /// Write what happens to FILE, with times
     #[arg(long, global = true, value_name = "FILE")]
     pub log: Option<PathBuf>,
-    /// Stop after S seconds with exit code 4 (`shell`: with what there is, if anything)
+    /// Stop after S seconds with exit code 4 (`shell`, `hyperbolic`: with what there is, if anything)
     #[arg(long, global = true, value_name = "S", value_parser = positive_seconds)]
     pub timeout: Option<f64>,
     /// Stop with exit code 4 when more memory is in use (bytes, or with K, M, G)
@@ -522,7 +522,7 @@ pub struct ComposeArgs {
     #[arg(long, requires = "points")]
     pub exact: bool,
     /// What a point outside the source of A gives
-    #[arg(long, value_enum, default_value_t = Outside::Error)]
+    #[arg(long, value_enum, default_value_t = Outside::Error, conflicts_with = "from")]
     pub outside: Outside,
     /// The file to write: .npy or .csv for points, a mesh for --from
     #[arg(short, long, value_name = "OUT")]

@@ -161,8 +161,15 @@ fn fields_that_do_not_fit_are_refused() {
     folder
         .write("m.obj", torus(5, 4))
         .write("short.csv", "x,y,z\n1,2,3\n")
-        .write("zero.csv", format!("x,y,z\n{}", "0,0,0\n".repeat(20)));
-    for (name, word) in [("short.csv", "20 vertices"), ("zero.csv", "neighbours"), ("wind", "no field of the name")] {
+        .write("zero.csv", format!("x,y,z\n{}", "0,0,0\n".repeat(20)))
+        .write("flat.csv", format!("x,y\n{}", "1,0.3\n".repeat(20)));
+    let cases = [
+        ("short.csv", "20 vertices"),
+        ("flat.csv", "2 columns"),
+        ("zero.csv", "neighbours"),
+        ("wind", "no field of the name"),
+    ];
+    for (name, word) in cases {
         let report = folder.line(&format!("bundle m.obj --field {name} -o b.json --json -q")).expect(3).json();
         assert_eq!(report["error"]["code"], "unfit-field");
         let message = report["error"]["message"].as_str().unwrap();
@@ -171,5 +178,20 @@ fn fields_that_do_not_fit_are_refused() {
     assert!(!folder.names().contains(&"b.json".to_owned()));
     for line in ["bundle m.obj --indices i.ply", "bundle m.obj --field zero.csv --indices i.obj"] {
         folder.line(line).expect(2);
+    }
+}
+
+/// A second output of the same name took the place of the first, and the page that of the file with the field.
+#[test]
+fn outputs_take_no_others_place() {
+    let folder = Folder::new();
+    let field = format!("x,y,z\n{}", "1,0.31,0.17\n".repeat(20));
+    folder.write("m.obj", torus(5, 4)).write("f.csv", &field);
+    for outputs in ["-o b.vtu --indices b.vtu", "-o b.json --report ./b.json", "--report f.csv", "--indices m.obj"] {
+        folder.line(&format!("bundle m.obj --field f.csv {outputs}")).expect(2);
+        assert_eq!(
+            (folder.names(), folder.text("f.csv")),
+            (vec!["f.csv".to_owned(), "m.obj".to_owned()], field.clone())
+        );
     }
 }

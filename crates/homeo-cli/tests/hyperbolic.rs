@@ -109,6 +109,9 @@ fn bad_input_is_named() {
     }
     folder.line("hyperbolic").expect(2);
     folder.line(&format!("hyperbolic {TRIPUS} --signature cPcbbbihq")).expect(2);
+    folder.line(&format!("hyperbolic {TRIPUS} -o same.glb --picture same.glb")).expect(2);
+    folder.line(&format!("hyperbolic {TRIPUS} -o same.html --report ./same.html")).expect(2);
+    assert!(!folder.names().iter().any(|name| name.starts_with("same")));
 }
 
 #[test]

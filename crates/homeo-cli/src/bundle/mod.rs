@@ -5,7 +5,7 @@ mod files;
 mod page;
 mod refuse;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use homeo::certificate::{Provenance, write_bundle};
 use homeo::progress::Progress;
@@ -19,7 +19,7 @@ use crate::answer::Answer;
 use crate::args::BundleArgs;
 use crate::failure::{Failure, Result};
 use crate::mesh_input::{self, Requested};
-use crate::outputs::{Outputs, check_target};
+use crate::outputs::{Outputs, check_targets};
 use crate::proof;
 use crate::session::Session;
 use crate::text::{Lines, file_name, stages};
@@ -29,8 +29,7 @@ use files::Kind;
 /// Makes a bundle, has it proved and stages its file.
 pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Result<Answer> {
     let kind = options.output.as_deref().map(|path| Kind::of(path, options.gluings)).transpose()?;
-    let targets = [&options.output, &options.indices, &options.report];
-    targets.into_iter().flatten().try_for_each(|path| check_target(path, &[&options.input]))?;
+    check_outputs(options)?;
     let format = options.indices.as_deref().map(files::surface_format).transpose()?;
     let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
     let mesh = mesh_input::read(session, &options.input, requested)?;
@@ -83,6 +82,13 @@ pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Re
         "report": shown(&options.report),
     });
     Ok(Answer::new(fields, words(session, options, &made, &claim)))
+}
+
+fn check_outputs(options: &BundleArgs) -> Result<()> {
+    let outputs = [&options.output, &options.indices, &options.report].into_iter().filter_map(|path| path.as_deref());
+    // A field may be a file too.
+    let inputs = [Some(options.input.as_path()), options.field.as_deref().map(Path::new)];
+    check_targets(&outputs.collect::<Vec<_>>(), &inputs.into_iter().flatten().collect::<Vec<_>>())
 }
 
 fn shown(path: &Option<PathBuf>) -> Option<String> {

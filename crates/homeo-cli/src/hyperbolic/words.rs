@@ -57,8 +57,9 @@ fn canonical(found: &Found) -> Value {
 
 fn canonical_in_words(found: &Found) -> String {
     match &found.canonical {
-        Ok(canonical) if canonical.triangulation.len() == found.triangulation.len()
-            && signature(&canonical.triangulation) == signature(&found.triangulation) =>
+        Ok(canonical)
+            if canonical.triangulation.len() == found.triangulation.len()
+                && signature(&canonical.triangulation) == signature(&found.triangulation) =>
         {
             "yes: the signature is the name of the manifold".to_owned()
         }
