@@ -43,7 +43,7 @@ pub struct Common {
     /// Write what happens to FILE, with times
     #[arg(long, global = true, value_name = "FILE")]
     pub log: Option<PathBuf>,
-    /// Stop after S seconds with exit code 4 (`shell`, `hyperbolic`: with what there is, if anything)
+    /// Stop after S seconds with exit code 4 (`shell`: with what there is, if anything)
     #[arg(long, global = true, value_name = "S", value_parser = positive_seconds)]
     pub timeout: Option<f64>,
     /// Stop with exit code 4 when more memory is in use (bytes, or with K, M, G)
@@ -519,7 +519,7 @@ pub struct ComposeArgs {
     #[arg(long, value_name = "P", required_unless_present = "from", conflicts_with = "from")]
     pub points: Option<PathBuf>,
     /// In rationals, without any error (CSV only)
-    #[arg(long, requires = "points")]
+    #[arg(long, conflicts_with = "from")]
     pub exact: bool,
     /// What a point outside the source of A gives
     #[arg(long, value_enum, default_value_t = Outside::Error, conflicts_with = "from")]

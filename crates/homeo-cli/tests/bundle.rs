@@ -104,6 +104,9 @@ fn what_is_no_closed_oriented_surface_is_refused_with_its_elements() {
     folder.write("v.mesh", cubes(&[[0, 0, 0]])).write("q.obj", quads(2)).write("m.off", closed);
     assert_eq!(folder.line("bundle v.mesh --json -q").expect(3).json()["error"]["code"], "wrong-dimension");
     assert_eq!(folder.line("bundle q.obj --json -q").expect(3).json()["error"]["code"], "polygon-not-triangle");
+    // Room for these was asked for at once, and the program was ended by the system.
+    let large = folder.line("bundle m.off --layers 1000000 --json -q").expect(4).json();
+    assert_eq!(large["error"]["code"], "too-large");
     for line in ["bundle m.off --layers 2", "bundle m.off -o b.obj", "bundle m.off --gluings -o b.vtu"] {
         folder.line(line).expect(2);
     }

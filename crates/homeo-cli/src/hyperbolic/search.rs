@@ -42,7 +42,9 @@ pub fn genera(triangulation: &Triangulation) -> Vec<usize> {
 /// With exit code 3 where it is proved that there is none, with 4 where none was found.
 pub fn structure(session: &Session, input: &Input, options: &HyperbolicArgs) -> Result<Found> {
     let mut found = any_structure(session, input, options.retriangulate, options.tries)?;
-    found.canonical = canonical(session, &found, options);
+    session.stage("canonical");
+    found.canonical =
+        find_canonical(&found.triangulation, &found.structure, options.tries.max(1), || session.check().is_ok());
     session.check()?;
     match &found.canonical {
         Ok(canonical) if options.canonical || input.is_free => {
@@ -57,25 +59,6 @@ pub fn structure(session: &Session, input: &Input, options: &HyperbolicArgs) -> 
         _ => {}
     }
     Ok(found)
-}
-
-/// Looks for the canonical decomposition. Unless it is asked for the metric is worth something without it: then the time limit
-/// ends this search and not the run.
-fn canonical(
-    session: &Session,
-    found: &Found,
-    options: &HyperbolicArgs,
-) -> std::result::Result<Canonical, NotCanonical> {
-    session.stage("canonical");
-    if !options.canonical {
-        session.let_time_end_work();
-    }
-    let may_go_on = || session.check().is_ok();
-    let canonical = find_canonical(&found.triangulation, &found.structure, options.tries.max(1), may_go_on);
-    if !options.canonical && session.let_time_end_run() {
-        session.display().note("the time limit ended the search for the canonical decomposition");
-    }
-    canonical
 }
 
 fn any_structure(session: &Session, input: &Input, retriangulate: bool, tries: usize) -> Result<Found> {
