@@ -519,10 +519,10 @@ pub struct ComposeArgs {
     #[arg(long, value_name = "P", required_unless_present = "from", conflicts_with = "from")]
     pub points: Option<PathBuf>,
     /// In rationals, without any error (CSV only)
-    #[arg(long, requires = "points")]
+    #[arg(long, conflicts_with = "from")]
     pub exact: bool,
     /// What a point outside the source of A gives
-    #[arg(long, value_enum, default_value_t = Outside::Error)]
+    #[arg(long, value_enum, default_value_t = Outside::Error, conflicts_with = "from")]
     pub outside: Outside,
     /// The file to write: .npy or .csv for points, a mesh for --from
     #[arg(short, long, value_name = "OUT")]

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::Write;
+use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
 
@@ -9,6 +10,7 @@ use log::{LevelFilter, Log, Metadata, Record};
 
 use crate::args::Common;
 use crate::failure::{Failure, Result};
+use crate::outputs::is_same;
 
 struct Logger {
     start: Instant,
@@ -19,7 +21,7 @@ struct Logger {
 /// Starts logging as the options ask.
 ///
 /// # Errors
-/// When the log file cannot be made.
+/// When the log file cannot be made, or would take the place of another file of the command line.
 pub fn start(common: &Common) -> Result<()> {
     let on_screen = match common.verbose {
         0 => LevelFilter::Off,
@@ -27,10 +29,7 @@ pub fn start(common: &Common) -> Result<()> {
         _ => LevelFilter::Trace,
     };
     let file = match &common.log {
-        Some(path) => Some(Mutex::new(
-            File::create(path)
-                .map_err(|error| Failure::usage(format!("the log file {} cannot be made: {error}", path.display())))?,
-        )),
+        Some(path) => Some(Mutex::new(made(path)?)),
         None => None,
     };
     let most = if file.is_some() { LevelFilter::Trace } else { on_screen };
@@ -38,6 +37,20 @@ pub fn start(common: &Common) -> Result<()> {
         log::set_max_level(most);
     }
     Ok(())
+}
+
+/// An empty file; not in the place of one that is named for something else, as that would be lost.
+fn made(path: &Path) -> Result<File> {
+    let words: Vec<String> = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    let others = (0..words.len()).filter(|&k| !words[k].starts_with("--log=") && (k == 0 || words[k - 1] != "--log"));
+    let name =
+        |k: usize| words[k].split_once('=').filter(|_| words[k].starts_with("--")).map_or(&*words[k], |(_, name)| name);
+    if others.map(name).any(|name| is_same(Path::new(name), path)) {
+        let message = format!("{} is named twice; give the log another name", path.display());
+        return Err(Failure::usage(message));
+    }
+    File::create(path)
+        .map_err(|error| Failure::usage(format!("the log file {} cannot be made: {error}", path.display())))
 }
 
 impl Log for Logger {

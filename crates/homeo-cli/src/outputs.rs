@@ -18,10 +18,7 @@ pub struct Outputs {
 /// # Errors
 /// When its folder is missing, or it is a folder, or the input itself.
 pub fn check_target(path: &Path, inputs: &[&Path]) -> Result<()> {
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    let folder = folder_of(path);
     if !folder.is_dir() {
         return Err(Failure::usage(format!(
             "cannot write {}: there is no folder {}",
@@ -32,10 +29,39 @@ pub fn check_target(path: &Path, inputs: &[&Path]) -> Result<()> {
     if path.is_dir() || path.file_name().is_none() {
         return Err(Failure::usage(format!("cannot write {}: it is a folder", path.display())));
     }
-    let same = |input: &&&Path| matches!((input.canonicalize(), path.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    match inputs.iter().find(same) {
+    match inputs.iter().find(|input| is_same(input, path)) {
         Some(_) => Err(Failure::usage(format!("{} is an input; give another name to write to", path.display()))),
         None => Ok(()),
+    }
+}
+
+/// The same for several files, which must not be one and the same: the second would take the place of the first.
+///
+/// # Errors
+/// When one cannot become a file, or two are the same.
+pub fn check_targets(paths: &[&Path], inputs: &[&Path]) -> Result<()> {
+    for (number, path) in paths.iter().enumerate() {
+        check_target(path, inputs)?;
+        if paths[..number].iter().any(|other| is_same(other, path)) {
+            return Err(Failure::usage(format!("two outputs have the name {}", path.display())));
+        }
+    }
+    Ok(())
+}
+
+/// Whether two names are those of one file, which need not be there yet; different links to a folder count as one.
+pub fn is_same(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        path.canonicalize().ok().or_else(|| Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?)))
+    };
+    place(a).is_some_and(|a| place(b) == Some(a))
+}
+
+/// The folder that a file is in.
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
     }
 }
 

@@ -23,6 +23,10 @@ fn curves_are_blended_and_closed() {
     let report = folder.line("blend testdata/polygons/ellipse.json eight.json -o c.svg --json").expect(3).json();
     assert_eq!(report["error"]["code"], "unfit-input");
     folder.line(&format!("{line} -o b.png")).expect(2);
+    // What is wrong with the second curve was said of the first.
+    folder.write("twice.json", "[[0,0],[0,0],[2,0],[0,2]]");
+    let refused = folder.line("blend testdata/polygons/ellipse.json twice.json -o c.svg").expect(3).stderr;
+    assert!(refused.contains("twice.json: vertex 0") && !refused.contains("ellipse.json"), "{refused}");
 }
 
 #[test]
@@ -61,4 +65,21 @@ fn splines_are_written_with_their_distances_and_drawn_as_they_are() {
     let refused = folder.line(&format!("{line} --spline 1000 -o no.json --json")).expect(3).json();
     assert_eq!(refused["error"]["code"], "no-spline");
     folder.line(&format!("{line} --spline 3 -o no.json")).expect(2);
+}
+
+/// They were read twice, which a pipe cannot be.
+#[cfg(unix)]
+#[test]
+fn curves_are_read_from_pipes() {
+    use std::io::Write;
+    use std::process::{Command, Stdio};
+    let folder = folder();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_homeo"));
+    let arguments = ["blend", "/dev/stdin", "testdata/polygons/bean.json", "--frames", "3", "-o", "p.json", "-q"];
+    let mut child = command.args(arguments).current_dir(folder.path("")).stdin(Stdio::piped()).spawn().unwrap();
+    let ellipse = folder.read("testdata/polygons/ellipse.json");
+    child.stdin.take().unwrap().write_all(&ellipse).unwrap();
+    assert!(child.wait().unwrap().success());
+    folder.line("blend testdata/polygons/ellipse.json testdata/polygons/bean.json --frames 3 -o f.json -q").expect(0);
+    assert_eq!(folder.text("p.json"), folder.text("f.json"));
 }

@@ -104,6 +104,9 @@ fn what_is_no_closed_oriented_surface_is_refused_with_its_elements() {
     folder.write("v.mesh", cubes(&[[0, 0, 0]])).write("q.obj", quads(2)).write("m.off", closed);
     assert_eq!(folder.line("bundle v.mesh --json -q").expect(3).json()["error"]["code"], "wrong-dimension");
     assert_eq!(folder.line("bundle q.obj --json -q").expect(3).json()["error"]["code"], "polygon-not-triangle");
+    // Room for these was asked for at once, and the program was ended by the system.
+    let large = folder.line("bundle m.off --layers 1000000 --json -q").expect(4).json();
+    assert_eq!(large["error"]["code"], "too-large");
     for line in ["bundle m.off --layers 2", "bundle m.off -o b.obj", "bundle m.off --gluings -o b.vtu"] {
         folder.line(line).expect(2);
     }
@@ -161,8 +164,15 @@ fn fields_that_do_not_fit_are_refused() {
     folder
         .write("m.obj", torus(5, 4))
         .write("short.csv", "x,y,z\n1,2,3\n")
-        .write("zero.csv", format!("x,y,z\n{}", "0,0,0\n".repeat(20)));
-    for (name, word) in [("short.csv", "20 vertices"), ("zero.csv", "neighbours"), ("wind", "no field of the name")] {
+        .write("zero.csv", format!("x,y,z\n{}", "0,0,0\n".repeat(20)))
+        .write("flat.csv", format!("x,y\n{}", "1,0.3\n".repeat(20)));
+    let cases = [
+        ("short.csv", "20 vertices"),
+        ("flat.csv", "2 columns"),
+        ("zero.csv", "neighbours"),
+        ("wind", "no field of the name"),
+    ];
+    for (name, word) in cases {
         let report = folder.line(&format!("bundle m.obj --field {name} -o b.json --json -q")).expect(3).json();
         assert_eq!(report["error"]["code"], "unfit-field");
         let message = report["error"]["message"].as_str().unwrap();
@@ -171,5 +181,20 @@ fn fields_that_do_not_fit_are_refused() {
     assert!(!folder.names().contains(&"b.json".to_owned()));
     for line in ["bundle m.obj --indices i.ply", "bundle m.obj --field zero.csv --indices i.obj"] {
         folder.line(line).expect(2);
+    }
+}
+
+/// A second output of the same name took the place of the first, and the page that of the file with the field.
+#[test]
+fn outputs_take_no_others_place() {
+    let folder = Folder::new();
+    let field = format!("x,y,z\n{}", "1,0.31,0.17\n".repeat(20));
+    folder.write("m.obj", torus(5, 4)).write("f.csv", &field);
+    for outputs in ["-o b.vtu --indices b.vtu", "-o b.json --report ./b.json", "--report f.csv", "--indices m.obj"] {
+        folder.line(&format!("bundle m.obj --field f.csv {outputs}")).expect(2);
+        assert_eq!(
+            (folder.names(), folder.text("f.csv")),
+            (vec!["f.csv".to_owned(), "m.obj".to_owned()], field.clone())
+        );
     }
 }

@@ -222,6 +222,10 @@ fn other_meshes_and_volumes_are_refused() {
     let line = "compose two.homeo two.homeo --from two.mesh --onto two.mesh -o no.vtu --json";
     assert_eq!(folder.line(line).expect(3).json()["error"]["code"], "wrong-kind");
     folder.line("compose a.homeo b.homeo --from a.obj -o no.vtu").expect(2);
+    // These are of points: they were taken, and did nothing.
+    for option in ["--exact", "--outside nan"] {
+        folder.line(&format!("compose a.homeo b.homeo --from a.obj --onto b.obj -o no.vtu {option}")).expect(2);
+    }
     folder.line("compose a.homeo b.homeo --from a.obj --onto b.obj -o no.csv").expect(2);
     folder.line("compose a.homeo b.homeo").expect(2);
     assert!(folder.names().iter().all(|name| !name.starts_with("no.")));

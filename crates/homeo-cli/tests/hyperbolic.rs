@@ -107,8 +107,15 @@ fn bad_input_is_named() {
         let run = folder.line(&format!("hyperbolic {arguments}")).expect(3);
         assert!(run.stderr.contains(words), "{arguments}: {}", run.stderr);
     }
+    // A record under another name was printed from its first line to its last, without the name of the file.
+    folder.write("record.txt", folder.read(TRIPUS));
+    let refused = folder.line("hyperbolic record.txt").expect(3).stderr;
+    assert!(refused.contains("record.txt") && refused.contains(".json") && refused.len() < 400, "{refused}");
     folder.line("hyperbolic").expect(2);
     folder.line(&format!("hyperbolic {TRIPUS} --signature cPcbbbihq")).expect(2);
+    folder.line(&format!("hyperbolic {TRIPUS} -o same.glb --picture same.glb")).expect(2);
+    folder.line(&format!("hyperbolic {TRIPUS} -o same.html --report ./same.html")).expect(2);
+    assert!(!folder.names().iter().any(|name| name.starts_with("same")));
 }
 
 #[test]

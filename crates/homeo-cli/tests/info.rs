@@ -121,3 +121,21 @@ fn other_kinds_have_their_counts() {
     let report = info("image.png", png);
     assert_eq!((&report["width"], &report["height"]), (&256.into(), &9.into()));
 }
+
+/// The log was made before anything was read, and the mesh was gone.
+#[test]
+fn a_log_does_not_take_the_place_of_another_file() {
+    let folder = Folder::new();
+    folder.write("m.off", CLOSED);
+    for line in [
+        "info m.off --log m.off",
+        "info m.off --log=./m.off",
+        "bundle m.off -o b.json --log b.json",
+        "info --log m.off m.off",
+    ] {
+        folder.line(line).expect(2);
+        assert_eq!((folder.names(), folder.text("m.off")), (vec!["m.off".to_owned()], CLOSED.to_owned()), "{line}");
+    }
+    folder.line("info m.off --log l.txt").expect(0);
+    assert!(folder.text("l.txt").contains("stage"));
+}

@@ -38,7 +38,7 @@ pub struct FieldSection {
 pub fn vectors(name: &str, mesh: &MeshFile) -> Result<Vec<[f64; 3]>> {
     let extension = Path::new(name).extension().map(|extension| extension.to_string_lossy().to_lowercase());
     let rows = match extension.as_deref() {
-        Some("csv" | "npy") => points::read(Path::new(name))?.rows,
+        Some("csv" | "npy") => from_file(Path::new(name))?,
         _ => carried(name, mesh)?,
     };
     let count = mesh.vertex_count;
@@ -46,6 +46,15 @@ pub fn vectors(name: &str, mesh: &MeshFile) -> Result<Vec<[f64; 3]>> {
         return Ok(rows);
     }
     let message = format!("{name} has {} vectors for {count} vertices: give one for each vertex", rows.len());
+    Err(Failure::input("unfit-field", message))
+}
+
+fn from_file(path: &Path) -> Result<Vec<[f64; 3]>> {
+    let table = points::read(path)?;
+    if table.columns == 3 {
+        return Ok(table.rows);
+    }
+    let message = format!("{} has {} columns: vectors in space have 3, x, y and z", path.display(), table.columns);
     Err(Failure::input("unfit-field", message))
 }
 

@@ -59,26 +59,20 @@ pub fn stage(
 ) -> Result<()> {
     session.stage("write");
     match kind {
-        Kind::Certificate => return Ok(()),
+        Kind::Certificate => Ok(()),
         Kind::Tetrahedra => {
-            outputs.stage(session, path, |out| write_tetrahedra(made, out).map_err(|e| e.to_string()))?
+            outputs.stage(session, path, |out| write_tetrahedra(made, out).map_err(|e| e.to_string())).map(|_| ())
         }
-        Kind::Gluings => outputs.stage(session, path, |out| {
-            out.write_all(write_record(&made.triangulation).as_bytes()).map_err(|e| e.to_string())
-        })?,
+        Kind::Gluings => {
+            let text = write_record(&made.triangulation);
+            outputs.stage(session, path, |out| out.write_all(text.as_bytes()).map_err(|e| e.to_string())).map(|_| ())
+        }
         Kind::Mesh(format) => {
-            let mesh = mesh(made, positions);
-            let mut losses = Vec::new();
-            let partial = outputs.stage(session, path, |out| {
-                losses = write_mesh_to(out, format, &mesh, &WriteOptions::default()).map_err(|e| e.to_string())?.losses;
-                Ok(())
-            })?;
-            losses.iter().for_each(|loss| session.display().note(&format!("{}: {loss}", path.display())));
+            let losses = stage_mesh(session, path, format, &mesh(made, positions), outputs)?;
             session.fact("losses", losses);
-            partial
+            Ok(())
         }
-    };
-    Ok(())
+    }
 }
 
 /// The format of a surface that holds fields at triangles.
@@ -103,8 +97,24 @@ pub fn stage_surface(
     mesh: &MeshFile,
     outputs: &mut Outputs,
 ) -> Result<()> {
-    let write = |out: &mut BufWriter<std::fs::File>| write_mesh_to(out, format, mesh, &WriteOptions::default());
-    outputs.stage(session, path, |out| write(out).map(|_| ()).map_err(|e| e.to_string())).map(|_| ())
+    stage_mesh(session, path, format, mesh, outputs).map(|_| ())
+}
+
+/// Stages a mesh; says what its format cannot hold.
+fn stage_mesh(
+    session: &Session,
+    path: &Path,
+    format: Format,
+    mesh: &MeshFile,
+    outputs: &mut Outputs,
+) -> Result<Vec<String>> {
+    let mut losses = Vec::new();
+    outputs.stage(session, path, |out| {
+        losses = write_mesh_to(out, format, mesh, &WriteOptions::default()).map_err(|e| e.to_string())?.losses;
+        Ok(())
+    })?;
+    losses.iter().for_each(|loss| session.display().note(&format!("{}: {loss}", path.display())));
+    Ok(losses)
 }
 
 /// One row on each line, so that large files can be read by eye and compared.

@@ -5,7 +5,7 @@ mod files;
 mod page;
 mod refuse;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use homeo::certificate::{Provenance, write_bundle};
 use homeo::progress::Progress;
@@ -19,18 +19,20 @@ use crate::answer::Answer;
 use crate::args::BundleArgs;
 use crate::failure::{Failure, Result};
 use crate::mesh_input::{self, Requested};
-use crate::outputs::{Outputs, check_target};
+use crate::outputs::{Outputs, check_targets};
 use crate::proof;
 use crate::session::Session;
 use crate::text::{Lines, file_name, stages};
 use field::FieldSection;
 use files::Kind;
 
+/// Tetrahedra take some hundred bytes each on the way.
+const MOST_TETRAHEDRA: u128 = 1 << 28;
+
 /// Makes a bundle, has it proved and stages its file.
 pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Result<Answer> {
     let kind = options.output.as_deref().map(|path| Kind::of(path, options.gluings)).transpose()?;
-    let targets = [&options.output, &options.indices, &options.report];
-    targets.into_iter().flatten().try_for_each(|path| check_target(path, &[&options.input]))?;
+    check_outputs(options)?;
     let format = options.indices.as_deref().map(files::surface_format).transpose()?;
     let requested = Requested { weld: options.weld, triangulate: options.triangulate, orient: options.orient };
     let mesh = mesh_input::read(session, &options.input, requested)?;
@@ -42,6 +44,7 @@ pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Re
     session.check()?;
     let vectors = options.field.as_deref().map(|name| field::vectors(name, &mesh.file)).transpose()?;
     session.stage("bundle");
+    unless_too_large(complex.cell_count(), complex.vertex_count(), options.layers)?;
     let corners: Vec<[u32; 3]> = complex.cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
     let tangent = TangentBundle::new(&corners, complex.vertex_count(), options.layers).map_err(explain)?;
     session.check()?;
@@ -83,6 +86,13 @@ pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Re
         "report": shown(&options.report),
     });
     Ok(Answer::new(fields, words(session, options, &made, &claim)))
+}
+
+fn check_outputs(options: &BundleArgs) -> Result<()> {
+    let outputs = [&options.output, &options.indices, &options.report].into_iter().filter_map(|path| path.as_deref());
+    // A field may be a file too.
+    let inputs = [Some(options.input.as_path()), options.field.as_deref().map(Path::new)];
+    check_targets(&outputs.collect::<Vec<_>>(), &inputs.into_iter().flatten().collect::<Vec<_>>())
 }
 
 fn shown(path: &Option<PathBuf>) -> Option<String> {
@@ -129,6 +139,19 @@ impl Made {
             },
         })
     }
+}
+
+/// Refuses bundles that no machine can hold before room is asked for, which would end the program.
+fn unless_too_large(triangles: usize, vertices: usize, layers: u32) -> Result<()> {
+    let (triangles, layers) = (triangles as u128, u128::from(layers));
+    // Paths have `layers * |characteristic|` edges or more in all, and each edge that is split adds two triangles.
+    let twice_characteristic = (2 * vertices as u128).abs_diff(triangles);
+    let tetrahedra = 3 * layers * (triangles + layers * twice_characteristic);
+    if tetrahedra <= MOST_TETRAHEDRA {
+        return Ok(());
+    }
+    let message = format!("{tetrahedra} tetrahedra may be needed, more than {MOST_TETRAHEDRA}; take fewer --layers");
+    Err(Failure::limits("too-large", message))
 }
 
 /// What the topology report lets through is a surface; the sizes are left.

@@ -12,6 +12,9 @@ use crate::outputs::Outputs;
 use crate::session::Session;
 use crate::text::file_name;
 
+/// So many indices are listed.
+const MOST_INDICES: usize = 40;
+
 /// Stages the page.
 ///
 /// # Errors
@@ -72,8 +75,12 @@ fn facts(made: &Made) -> Vec<(String, String)> {
         facts.push(fact("sum of its indices", field.sum().to_string()));
         let elements = field.vertices.iter().map(|found| ("vertex", found));
         let elements = elements.chain(field.triangles.iter().map(|found| ("triangle", found)));
-        for (kind, (element, index)) in elements.take(40) {
+        for (kind, (element, index)) in elements.take(MOST_INDICES) {
             facts.push(fact(&format!("index of {kind} {element}"), format!("{index:+}")));
+        }
+        let count = field.vertices.len() + field.triangles.len();
+        if count > MOST_INDICES {
+            facts.push(fact("more that are singular", format!("{} (in the file of --indices)", count - MOST_INDICES)));
         }
     }
     facts

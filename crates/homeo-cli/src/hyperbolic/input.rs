@@ -5,7 +5,7 @@ use std::path::Path;
 use homeo::progress::Progress;
 use homeo_core::io::Format;
 use homeo_manifold::{
-    RecordError, Triangulation, from_signature, read_record, read_record_of, read_records, signature,
+    RecordError, SignatureError, Triangulation, from_signature, read_record, read_record_of, read_records, signature,
 };
 use serde_json::{Value, json};
 
@@ -17,6 +17,9 @@ use crate::text::file_name;
 
 /// So many entries of a file are named where one that was asked for is not there.
 const NAMED: usize = 8;
+
+/// So many characters are shown of what is no signature.
+const SHOWN: usize = 60;
 
 /// A triangulation and where it is from.
 pub struct Input {
@@ -36,7 +39,8 @@ pub fn read(session: &Session, options: &HyperbolicArgs) -> Result<Input> {
     session.stage("read");
     if let Some(text) = &options.signature {
         session.fact("input", json!({"signature": text}));
-        return Ok(Input { triangulation: of_signature(text)?, name: text.trim().to_owned(), is_free: false });
+        let triangulation = of_signature(text, "")?;
+        return Ok(Input { triangulation, name: text.trim().to_owned(), is_free: false });
     }
     let Some(path) = options.input.as_deref() else {
         return Err(Failure::usage("give INPUT, or --signature"));
@@ -49,7 +53,7 @@ pub fn read(session: &Session, options: &HyperbolicArgs) -> Result<Input> {
         Some(_) => of_mesh(session, path)?,
         None => {
             let text = text_of(session, path)?;
-            let triangulation = of_signature(&text)?;
+            let triangulation = of_signature(&text, &format!("{}: ", path.display()))?;
             Input { triangulation, name: file_name(path), is_free: false }
         }
     };
@@ -65,9 +69,15 @@ fn of_mesh(session: &Session, path: &Path) -> Result<Input> {
     Ok(Input { triangulation, name: file_name(path), is_free: true })
 }
 
-fn of_signature(text: &str) -> Result<Triangulation> {
-    from_signature(text)
-        .map_err(|error| Failure::input("bad-signature", format!("{:?} is no signature: {error}", text.trim())))
+/// The triangulation of a signature from `place`; files that hold something else may be long.
+fn of_signature(text: &str, place: &str) -> Result<Triangulation> {
+    let refused = |error: SignatureError| {
+        let start: String = text.trim().chars().take(SHOWN).collect();
+        let rest = if text.trim().chars().nth(SHOWN).is_some() { "..." } else { "" };
+        let advice = if text.trim_start().starts_with(['{', '[']) { "; records are read from files .json" } else { "" };
+        Failure::input("bad-signature", format!("{place}{start:?}{rest} is no signature: {error}{advice}"))
+    };
+    from_signature(text).map_err(refused)
 }
 
 fn text_of(session: &Session, path: &Path) -> Result<String> {

@@ -14,7 +14,7 @@ use serde_json::json;
 use crate::answer::Answer;
 use crate::args::HyperbolicArgs;
 use crate::failure::Result;
-use crate::outputs::{Outputs, check_target};
+use crate::outputs::{Outputs, check_targets};
 use crate::proof;
 use crate::session::Session;
 use input::Input;
@@ -46,10 +46,8 @@ pub fn run(session: &Session, options: &HyperbolicArgs, outputs: &mut Outputs) -
 fn check_outputs(options: &HyperbolicArgs) -> Result<()> {
     let inputs: Vec<&Path> = options.input.as_deref().into_iter().collect();
     options.picture.as_deref().map(picture::Format::of_path).transpose()?;
-    [&options.output, &options.report, &options.picture]
-        .into_iter()
-        .flatten()
-        .try_for_each(|path| check_target(path, &inputs))
+    let outputs = [&options.output, &options.report, &options.picture].into_iter().filter_map(|path| path.as_deref());
+    check_targets(&outputs.collect::<Vec<_>>(), &inputs)
 }
 
 fn provenance(session: &Session, options: &HyperbolicArgs, input: &Input, found: &Found) -> Provenance {

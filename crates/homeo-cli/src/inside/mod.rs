@@ -28,7 +28,7 @@ use homeo_core::io::{Attribute, Format, MeshFile, WriteOptions, read_mesh_bytes,
 use homeo_verify::Claim;
 
 use crate::failure::{Failure, Result};
-use crate::outputs::{Outputs, check_target};
+use crate::outputs::{Outputs, check_targets};
 use crate::proof;
 use crate::session::Session;
 
@@ -41,12 +41,7 @@ struct Targets<'a> {
 impl Targets<'_> {
     /// Refuses names that cannot be written to.
     fn check(&self, inputs: &[&Path]) -> Result<Format> {
-        for path in self.paths() {
-            check_target(path, inputs)?;
-        }
-        if self.map == Some(self.mesh) {
-            return Err(Failure::usage(format!("two outputs have the name {}", self.mesh.display())));
-        }
+        check_targets(&self.paths().collect::<Vec<_>>(), inputs)?;
         match Format::of_path(self.mesh) {
             Some(Format::Json) | None => {
                 let message =

@@ -16,7 +16,7 @@ use super::staged;
 use crate::answer::Answer;
 use crate::args::PlArgs;
 use crate::failure::{Failure, Result};
-use crate::outputs::{Outputs, check_target};
+use crate::outputs::{Outputs, check_targets};
 use crate::proof;
 use crate::session::Session;
 use crate::text::{Lines, stages};
@@ -59,12 +59,7 @@ fn names(options: &PlArgs) -> [&Path; 2] {
 
 fn check_outputs(options: &PlArgs) -> Result<[Format; 2]> {
     let paths: Vec<&Path> = names(options).into_iter().chain(options.exact.as_deref()).collect();
-    for (k, path) in paths.iter().enumerate() {
-        check_target(path, &[&options.map])?;
-        if paths[..k].contains(path) {
-            return Err(Failure::usage(format!("two outputs have the name {}", path.display())));
-        }
-    }
+    check_targets(&paths, &[&options.map])?;
     let [source, image] = names(options).map(format_of);
     Ok([source?, image?])
 }

@@ -17,7 +17,7 @@ use crate::answer::Answer;
 use crate::args::{MapArgs, TargetName};
 use crate::failure::{Failure, Result};
 use crate::mesh_input::{self, Cells, MeshInput, Requested, source_mesh};
-use crate::outputs::{Outputs, check_target};
+use crate::outputs::{Outputs, check_targets};
 use crate::proof;
 use crate::report;
 use crate::sampled::{self, Sampled};
@@ -89,12 +89,7 @@ fn check_outputs(options: &MapArgs) -> Result<()> {
     inputs.extend(options.regions.as_deref());
     let outputs: Vec<&Path> =
         [&options.output, &options.report, &options.vtu].into_iter().filter_map(|path| path.as_deref()).collect();
-    for (index, path) in outputs.iter().enumerate() {
-        check_target(path, &inputs)?;
-        if outputs[..index].contains(path) {
-            return Err(Failure::usage(format!("two outputs have the name {}", path.display())));
-        }
-    }
+    check_targets(&outputs, &inputs)?;
     options.vtu.as_deref().map_or(Ok(()), vtu::check_name)
 }
 

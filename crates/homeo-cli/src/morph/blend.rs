@@ -1,7 +1,10 @@
 //! `homeo blend`: closed curves between two others, by curvature.
 
 use homeo::progress::Progress;
-use homeo::shape::{CurvatureBlend, ShapePath, SplineError, SplineFit, SplineParams, check_simple, fit_closed_spline};
+use homeo::shape::{
+    CurvatureBlend, CurvatureProfile, ShapeError, ShapePath, SplineError, SplineFit, SplineParams, check_simple,
+    fit_closed_spline,
+};
 use homeo_core::planar::Point2;
 use serde_json::json;
 
@@ -38,8 +41,7 @@ pub fn blend(session: &Session, options: &BlendArgs, outputs: &mut Outputs) -> R
     let vertices = source.len();
     session.fact("input", json!({"path": options.from.display().to_string(), "vertices": vertices}));
     session.stage("path");
-    let unfit = |e: homeo::shape::ShapeError| Failure::input("unfit-input", format!("{}: {e}", options.from.display()));
-    let path = CurvatureBlend::new(source, target).map_err(unfit)?;
+    let path = path_between(options, source, target)?;
     let mut curves = Vec::new();
     for frame in 0..options.frames {
         session.check()?;
@@ -57,6 +59,15 @@ pub fn blend(session: &Session, options: &BlendArgs, outputs: &mut Outputs) -> R
     })?;
     session.end_stage();
     Ok(answer(session, options, &curves))
+}
+
+/// The path; what is wrong with one curve is said of its file.
+fn path_between(options: &BlendArgs, source: Vec<Point2>, target: Vec<Point2>) -> Result<CurvatureBlend> {
+    let unfit = |of: String, error: ShapeError| Failure::input("unfit-input", format!("{of}: {error}"));
+    let [from, to] = [&options.from, &options.to].map(|path| path.display().to_string());
+    CurvatureProfile::new(&source).map_err(|error| unfit(from.clone(), error))?;
+    CurvatureProfile::new(&target).map_err(|error| unfit(to.clone(), error))?;
+    CurvatureBlend::new(source, target).map_err(|error| unfit(format!("{from} and {to}"), error))
 }
 
 /// The spline near a curve; how near is said, whatever it is.

@@ -21,7 +21,7 @@ use crate::answer::Answer;
 use crate::args::ShellArgs;
 use crate::failure::{Failure, Result};
 use crate::mesh_input::{self, Requested, source_mesh};
-use crate::outputs::{Outputs, check_target};
+use crate::outputs::{Outputs, check_targets};
 use crate::proof;
 use crate::report;
 use crate::session::Session;
@@ -83,16 +83,11 @@ pub fn run(session: &Session, options: &ShellArgs, outputs: &mut Outputs) -> Res
 }
 
 fn check_outputs(options: &ShellArgs, layers: &[std::path::PathBuf]) -> Result<()> {
-    let outputs: Vec<&std::path::PathBuf> = options.output.iter().chain(&options.report).chain(layers).collect();
-    for (index, path) in outputs.iter().enumerate() {
-        let inputs: Vec<&Path> =
-            std::iter::once(&options.input).chain(&options.frozen).map(|path| path.as_path()).collect();
-        check_target(path, &inputs)?;
-        if outputs[..index].contains(path) {
-            return Err(Failure::usage(format!("two outputs have the name {}", path.display())));
-        }
-    }
-    Ok(())
+    let outputs = options.output.iter().chain(&options.report).chain(layers);
+    let outputs: Vec<&Path> = outputs.map(|path| path.as_path()).collect();
+    let inputs: Vec<&Path> =
+        std::iter::once(&options.input).chain(&options.frozen).map(|path| path.as_path()).collect();
+    check_targets(&outputs, &inputs)
 }
 
 /// A shell, and how it came about.

@@ -25,7 +25,7 @@ use serde_json::{Value, json};
 use crate::answer::Answer;
 use crate::args::{Coordinates, FilterName, MethodName, MiddleName, PolygonArgs, WarpArgs};
 use crate::failure::{Failure, Result};
-use crate::outputs::{Outputs, check_target};
+use crate::outputs::{Outputs, check_targets};
 use crate::points::{self, PointFormat, Table, csv, npy};
 use crate::proof;
 use crate::session::Session;
@@ -142,12 +142,7 @@ fn check_outputs(options: &WarpArgs) -> Result<()> {
     inputs.extend(polygons::paths(&options.polygons));
     let paths: Vec<&Path> =
         [&options.output, &options.map, &options.field].into_iter().filter_map(|path| path.as_deref()).collect();
-    for (k, path) in paths.iter().enumerate() {
-        check_target(path, &inputs)?;
-        if paths[..k].contains(path) {
-            return Err(Failure::usage(format!("two outputs have the name {}", path.display())));
-        }
-    }
+    check_targets(&paths, &inputs)?;
     let is_picture = picture::is_picture(&options.input);
     match &options.output {
         Some(output) if is_picture && !picture::is_picture(output) => {

@@ -25,9 +25,17 @@ pub fn read(options: &PolygonArgs) -> Result<(DomainPair, Option<f64>)> {
 
 /// The source of a pair, or a polygon by itself. Like those of pairs, its rings may run either way round.
 pub fn source(path: &Path) -> Result<PlanarDomain> {
-    let rings = match is_drawing(path) || json(path)?.get("source").is_none() {
+    let rings = match is_drawing(path) {
         true => rings(path)?,
-        false => pair(path)?.source,
+        false => {
+            // Once, as it may be a pipe.
+            let value = json(path)?;
+            match value.get("source") {
+                Some(_) => read_pair(&value).map(|pair| pair.source),
+                None => read_rings(&value),
+            }
+            .map_err(|e| syntax(path, &e.to_string()))?
+        }
     };
     Ok(DomainPair::new(rings.clone(), rings).map_err(|error| explain(path, &error))?.source)
 }
@@ -37,21 +45,31 @@ const SAMPLES: usize = 8;
 
 /// A closed curve as a list of points; it may cross itself. One that is given by control points is sampled.
 pub fn curve(path: &Path) -> Result<Vec<Point2>> {
-    if !is_drawing(path)
-        && let Some(control) = json(path)?.get("control")
-    {
-        let control: Vec<Point2> =
-            serde_json::from_value(control.clone()).map_err(|e| syntax(path, &format!("control: {e}")))?;
-        let spline = ClosedSpline::new(control).map_err(|e| syntax(path, &e.to_string()))?;
-        return Ok(sample_closed(|u| spline.at(u)[0], SAMPLES * spline.control().len()));
-    }
-    let mut rings = rings(path)?;
+    let mut rings = match is_drawing(path) {
+        true => rings(path)?,
+        false => {
+            // Once, as it may be a pipe.
+            let value = json(path)?;
+            match value.get("control") {
+                Some(control) => vec![sampled(path, control)?],
+                None => read_rings(&value).map_err(|e| syntax(path, &e.to_string()))?,
+            }
+        }
+    };
     match rings.pop() {
         Some(ring) if rings.is_empty() => Ok(ring),
         _ => {
             Err(Failure::input("bad-syntax", format!("{}: one closed curve is needed, without holes", path.display())))
         }
     }
+}
+
+/// Samples of the spline of some control points.
+fn sampled(path: &Path, control: &Value) -> Result<Vec<Point2>> {
+    let control: Vec<Point2> =
+        serde_json::from_value(control.clone()).map_err(|e| syntax(path, &format!("control: {e}")))?;
+    let spline = ClosedSpline::new(control).map_err(|e| syntax(path, &e.to_string()))?;
+    Ok(sample_closed(|u| spline.at(u)[0], SAMPLES * spline.control().len()))
 }
 
 /// The files that are read.

@@ -49,6 +49,8 @@ pub enum BundleError {
     TooMany { vertices: usize, layers: u32 },
     #[error("triangle {triangle} names vertex {vertex}, but there are {count} vertices")]
     NoVertex { triangle: u32, vertex: u32, count: usize },
+    #[error("there are slopes for {given} triangles, but {count} triangles: give one row for each")]
+    Slopes { given: usize, count: usize },
     #[error("the slopes of triangle {triangle} add up to {sum} modulo the {layers} layers, not to -1 or -2")]
     Curved { triangle: u32, sum: u32, layers: u32 },
     #[error("the slopes over the edge of triangles {first} and {second} differ: one must be -1 less the other")]
@@ -64,7 +66,7 @@ pub enum BundleError {
 }
 
 impl CircleBundle {
-    /// A bundle with these slopes, one for each side of each triangle.
+    /// A bundle with these slopes, one for each side of each triangle; they count modulo the number of layers.
     ///
     /// # Errors
     /// What keeps the slopes from being those of a bundle, or the triangles from being a surface.
@@ -75,6 +77,10 @@ impl CircleBundle {
         slopes: Vec<[u32; 3]>,
     ) -> Result<Self, BundleError> {
         check_sizes(triangles, vertex_count, layers)?;
+        if slopes.len() != triangles.len() {
+            return Err(BundleError::Slopes { given: slopes.len(), count: triangles.len() });
+        }
+        let slopes: Vec<[u32; 3]> = slopes.into_iter().map(|row| row.map(|slope| slope % layers)).collect();
         let walls = Walls::new(triangles)?;
         for side in walls.sides() {
             if let Some(other) = walls.across(side) {
@@ -217,4 +223,27 @@ pub(crate) fn check_sizes(triangles: &[[u32; 3]], vertex_count: usize, layers: u
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
+
+    #[test]
+    fn slopes_of_another_number_are_told() {
+        let refused = CircleBundle::new(&SQUARE, 4, 4, vec![[0, 0, 3]]);
+        assert_eq!(refused, Err(BundleError::Slopes { given: 1, count: 2 }));
+    }
+
+    #[test]
+    fn slopes_count_modulo_the_layers() {
+        let product = CircleBundle::product(&SQUARE, 4, 4, &[]).unwrap();
+        // The largest multiple of 4 that can be added to all.
+        let lifted = product.slopes().iter().map(|row| row.map(|slope| slope + (u32::MAX - 3))).collect();
+        assert_eq!(CircleBundle::new(&SQUARE, 4, 4, lifted).unwrap(), product);
+        let torn = CircleBundle::new(&SQUARE, 4, 4, vec![[0, 0, 3], [1, 0, 2]]).unwrap_err();
+        assert_eq!(torn, BundleError::Torn { first: 0, second: 1 });
+    }
 }

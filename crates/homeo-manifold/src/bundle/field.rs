@@ -6,7 +6,7 @@ use super::identification::{Identification, pairs};
 use super::polar::{Polar, corner_angles, reduced};
 use super::refine::Carrier;
 use super::section::{Section, SectionError, closed_walls};
-use super::vector::Vector;
+use super::vector::{Vector, near_one};
 use super::walls::{Side, Walls, sides_by_ends};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -26,12 +26,14 @@ pub(super) fn section<'b>(
         return Err(SectionError::Count { given, count });
     }
     let walls = closed_walls(bundle)?;
-    let mut all = places.to_vec();
+    // Neither the size of the surface nor that of a vector matters, only directions do.
+    let mut all = near_one(places);
     for carrier in added {
         all.push(carrier.point(&all));
     }
     let polar = Polar::new(bundle, &walls, corner_angles(bundle, &all))?;
-    let given = (0..).zip(vectors).map(|(vertex, &vector)| polar.direction(bundle, &all, vertex, vector));
+    let given =
+        (0..).zip(vectors).map(|(vertex, &vector)| polar.direction(bundle, &all, vertex, near_one(&[vector])[0]));
     let field = Field::new(bundle, &walls, &polar, given.collect::<Result<_, _>>()?, added)?;
     let identification = Identification::new(bundle, &walls, &polar)?;
     Ok(field.section(&identification))

@@ -144,6 +144,9 @@ fn reduce_all(editor: &mut Editor) {
 /// Some moves 2-3 at random faces.
 fn shake(editor: &mut Editor, random: &mut Random, steps: usize) {
     let mut alive: Vec<_> = alive(editor).collect();
+    if alive.is_empty() {
+        return;
+    }
     for _ in 0..steps {
         let tetrahedron = alive[random.below(alive.len() as u32) as usize];
         if let Some(new) = two_to_three(editor, tetrahedron, random.below(4) as u8) {
@@ -299,6 +302,14 @@ mod tests {
             search.run(1000);
             assert_eq!(signature(search.best()), "cPcbbbihq");
         }
+    }
+
+    #[test]
+    fn of_no_tetrahedra_nothing_is_made() {
+        let mut simplifier = Simplifier::new(&Triangulation::new(0), 1).unwrap();
+        assert!(!simplifier.run(3));
+        assert_eq!(simplifier.shaken(5).len(), 0);
+        assert_eq!(without_inner_vertices(&Triangulation::new(0)).unwrap().len(), 0);
     }
 
     #[test]

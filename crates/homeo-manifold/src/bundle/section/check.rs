@@ -1,6 +1,5 @@
 //! Whether paths are those of a section, and its indices: from lists of tetrahedra and paths, with nothing else.
 
-use super::super::walls::WallError;
 use std::collections::HashMap;
 use thiserror::Error;
 
@@ -33,10 +32,12 @@ pub struct WoundPaths {
 #[derive(Debug, Error, Clone, PartialEq, Eq)]
 #[allow(missing_docs)] // the messages say what the fields are
 pub enum PathFault {
-    #[error("the base is no surface: {0}")]
-    Base(#[from] WallError),
     #[error("there are {given} tetrahedra, not {wanted}")]
     Count { given: usize, wanted: usize },
+    #[error(
+        "vertex {vertex} of triangle {triangle} is too large: with {layers} layers vertices of tetrahedra go beyond 2^32"
+    )]
+    TooLarge { triangle: u32, vertex: u32, layers: u32 },
     #[error("the tetrahedra over triangle {triangle} do not follow one another round a solid torus")]
     NoTorus { triangle: u32 },
     #[error("the paths meet the fibre over vertex {vertex} at {first} and at {second}: a section meets it once")]
@@ -71,6 +72,10 @@ impl WoundPaths {
         let mut sums = std::collections::BTreeMap::new();
         let pieces = tetrahedra.chunks(3 * layers as usize);
         for ((triangle, corners), piece) in (0..).zip(base).zip(pieces) {
+            let has_vertices = |vertex: &&u32| (u64::from(**vertex) + 1) * u64::from(layers) <= 1 << 32;
+            if let Some(&vertex) = corners.iter().find(|vertex| !has_vertices(vertex)) {
+                return Err(PathFault::TooLarge { triangle, vertex, layers });
+            }
             let steps = steps(piece).ok_or(PathFault::NoTorus { triangle })?;
             let index = section.winding(triangle, *corners, &steps)?;
             match corners.iter().find(|vertex| !section.at.contains_key(vertex)) {

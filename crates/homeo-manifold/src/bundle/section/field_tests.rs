@@ -335,3 +335,21 @@ fn paths_that_are_changed_are_found() {
     }
     assert_eq!((faults, indices), (2 * paths.len(), paths.len()));
 }
+
+/// Squares of tiny vectors vanished, so that they were taken for zeros; those of large ones were infinite.
+#[test]
+fn neither_the_size_of_the_surface_nor_that_of_vectors_counts() {
+    let surface = ball();
+    let tangent = TangentBundle::new(&surface.triangles, surface.places.len(), 8).unwrap();
+    let vectors = random(surface.places.len(), 3);
+    let scaled = |vectors: &[Vector], exponent: i32| -> Vec<Vector> {
+        vectors.iter().map(|vector| vector.map(|x| x * 2_f64.powi(exponent))).collect()
+    };
+    let section = Section::of_field(&tangent, &surface.places, &vectors).unwrap();
+    assert!(section.singularities().count() > 10);
+    for (of_places, of_vectors) in [(0, -700), (0, 700), (-400, 0), (300, 0), (-1000, -1000)] {
+        let (places, vectors) = (scaled(&surface.places, of_places), scaled(&vectors, of_vectors));
+        let other = Section::of_field(&tangent, &places, &vectors).unwrap();
+        assert_eq!((other.levels(), other.paths()), (section.levels(), section.paths()), "{of_places} {of_vectors}");
+    }
+}

@@ -106,7 +106,19 @@ fn what_is_no_section_is_told() {
     assert_eq!(flat, SectionError::Flat { vertex: 0 });
 }
 
-/// An octahedron with its eight triangles split into four, twice, on the unit sphere.
+#[test]
+fn a_base_with_vertices_beyond_all_numbers_is_told() {
+    let bundle = bundle(&torus(3, 3), 4);
+    let section = Section::new(&bundle, vec![0; 9]).unwrap();
+    let mut base = bundle.triangles().to_vec();
+    let wound = |base: &[[u32; 3]]| WoundPaths::new(base, 4, &bundle.tetrahedra(), &section.paths());
+    assert!(wound(&base).is_ok());
+    base[0][0] = u32::MAX;
+    let fault = PathFault::TooLarge { triangle: 0, vertex: u32::MAX, layers: 4 };
+    assert_eq!(wound(&base).unwrap_err(), fault);
+}
+
+/// An octahedron with its eight triangles split into four, three times, on the unit sphere.
 pub(super) fn sphere() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let mut places: Vec<[f64; 3]> =
         (0..6).map(|k| [0, 1, 2].map(|axis| f64::from(k / 2 == axis) * f64::from(1 - k % 2 * 2))).collect();
