@@ -19,6 +19,7 @@
 //! shells also the number of pairs, of a source triangle and a prism, whose boxes meet. Composite mean value maps and complex maps: for each
 //! step some hundred to thousand boxes for each vertex, each of `O(N)`; on all processors.
 
+mod affine;
 mod archive;
 mod ball;
 mod bundle;
@@ -185,7 +186,9 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
         Kind::CompositeMeanValue => ("composite-mean-value", "theorem on composite mean value maps, rules D and C1-C3"),
         Kind::ComplexBarycentric => ("complex-barycentric", "theorem on complex maps with speeds, rules D and K1-K3"),
-        Kind::Hyperbolic if is_canonical => ("hyperbolic", "theorems on glued truncated tetrahedra and tilts, rules Y1-Y8"),
+        Kind::Hyperbolic if is_canonical => {
+            ("hyperbolic", "theorems on glued truncated tetrahedra and tilts, rules Y1-Y8")
+        }
         Kind::Hyperbolic => ("hyperbolic", "theorem on glued truncated tetrahedra, rules Y1-Y7"),
         Kind::UnitTangentBundle => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T8"),
     };
