@@ -659,18 +659,36 @@ pub struct PolygonArgs {
     /// How a picture is read between its pixels
     #[arg(long, value_enum, value_name = "FILTER", default_value_t = FilterName::Bicubic)]
     pub filter: FilterName,
-    /// About how many triangles the map has on either side
-    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = at_least_one)]
-    pub triangles: usize,
-    /// The convex polygon between source and target
-    #[arg(long, value_enum, value_name = "SHAPE", default_value_t = MiddleName::Lengths)]
-    pub middle: MiddleName,
+    /// Harmonic maps: about how many triangles they have on either side [default: 10000]
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    pub triangles: Option<usize>,
+    /// Harmonic maps: the convex polygon between source and target [default: lengths]
+    #[arg(long, value_enum, value_name = "SHAPE")]
+    pub middle: Option<MiddleName>,
     /// Polygons with a hole: by how much its rim turns [default: the pair's `winding_hint`, or as little as possible]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub turn: Option<f64>,
     /// How polygons or cages move, for the frames of a morph and for mean value maps; cages: straight or angles
     #[arg(long, value_enum, value_name = "PATH", default_value_t = PathName::Auto)]
     pub path: PathName,
+}
+
+impl PolygonArgs {
+    /// About how many triangles a harmonic map has on either side.
+    pub fn triangles(&self) -> usize {
+        self.triangles.unwrap_or(10_000)
+    }
+
+    /// The middle of a harmonic map.
+    pub fn middle(&self) -> MiddleName {
+        self.middle.unwrap_or(MiddleName::Lengths)
+    }
+
+    /// The first option that is given and says something of harmonic maps only.
+    pub fn harmonic_option(&self) -> Option<&'static str> {
+        let given = [("--triangles", self.triangles.is_some()), ("--middle", self.middle.is_some())];
+        given.into_iter().find_map(|(name, is_given)| is_given.then_some(name))
+    }
 }
 
 #[derive(Debug, Args)]

@@ -106,6 +106,29 @@ fn what_makes_no_sense_is_refused() {
     assert!(!folder.path("out.csv").exists());
 }
 
+/// Options of harmonic maps say nothing of other maps: each is refused by its name and the method, and taken without one.
+#[test]
+fn options_of_another_method_are_refused() {
+    let folder = folder(80);
+    folder.write("landmarks.csv", "x,y,u,v\n0,0,0,0\n1,0,1,0\n0,1,0,1\n");
+    let polygons = "--from testdata/polygons/square.json --to kite.json";
+    for option in ["--triangles 500", "--middle regular"] {
+        let name = option.split(' ').next().unwrap();
+        for method in ["--method mean-value", "--method complex", "--landmarks"] {
+            let of =
+                if method == "--landmarks" { "--landmarks landmarks.csv" } else { &format!("{polygons} {method}") };
+            let error = folder.line(&format!("warp points.csv {of} {option} -o out.csv --json")).expect(2).json();
+            let message = error["error"]["message"].as_str().unwrap_or_default();
+            assert!(message.contains(name) && message.contains(method), "{message}");
+        }
+        folder.line(&format!("warp points.csv {polygons} --method harmonic {option} -o {name}.csv")).expect(0);
+        folder.line(&format!("warp points.csv {polygons} {option} -o {name}.csv")).expect(0);
+    }
+    let cages = "--from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj --triangles 500";
+    folder.line(&format!("warp testdata/meshes/spot.mesh {cages} -o out.vtu")).expect(2);
+    assert!(!folder.path("out.csv").exists() && !folder.path("out.vtu").exists());
+}
+
 /// A file whose control values were changed is refused by the command, too.
 #[test]
 fn damaged_files_are_refused() {

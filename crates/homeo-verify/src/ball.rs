@@ -1,4 +1,4 @@
-//! Real numbers known up to a radius, and functions with two derivatives, in floating point rounded outwards.
+//! Real numbers known up to a radius, in floating point rounded outwards.
 //!
 //! *Rounding.* A double `m` that comes out of one operation is within `EPSILON / 2 |m|` of the exact result, or within
 //! `2^-1074` if it underflows. A radius is a sum of products of numbers that are not negative, of fewer than sixteen
@@ -27,11 +27,6 @@ impl Ball {
     /// A double, exactly.
     pub(crate) fn exact(value: f64) -> Ball {
         Ball { middle: value, radius: 0.0 }
-    }
-
-    /// All numbers from `low` to `high`.
-    pub(crate) fn between(low: f64, high: f64) -> Ball {
-        Ball::rounded(0.5 * low + 0.5 * high, 0.5 * (high - low))
     }
 
     /// What an operation gives whose middle was rounded once.
@@ -128,86 +123,6 @@ impl Mul for Ball {
     }
 }
 
-/// A vector of the plane.
-pub(crate) type Vector = [Ball; 2];
-
-pub(crate) fn vector(of: impl Fn(usize) -> Ball) -> Vector {
-    [of(0), of(1)]
-}
-
-/// The length of a vector, which changes no faster than the vector does.
-pub(crate) fn length([x, y]: Vector) -> Ball {
-    let hypotenuse = |a: f64, b: f64| (a * a + b * b).sqrt();
-    // Squares that underflow are far below the square of this, three more roundings below two units in the last place.
-    let radius = hypotenuse(x.radius, y.radius) + 1e-150;
-    let middle = hypotenuse(x.middle, y.middle);
-    Ball::rounded(middle, radius + 2.0 * f64::EPSILON * middle)
-}
-
-pub(crate) fn dot(a: Vector, b: Vector) -> Ball {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-pub(crate) fn cross(a: Vector, b: Vector) -> Ball {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-/// The value of a function at a point, and its derivatives along two directions.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Dual(pub(crate) [Ball; 3]);
-
-impl Dual {
-    pub(crate) const ZERO: Dual = Dual([Ball::ZERO; 3]);
-
-    /// A constant.
-    pub(crate) fn constant(value: Ball) -> Dual {
-        Dual([value, Ball::ZERO, Ball::ZERO])
-    }
-
-    pub(crate) fn scaled(self, factor: Ball) -> Dual {
-        Dual(self.0.map(|x| x * factor))
-    }
-
-    /// The quotient: `(a / b)' = (a' - (a / b) b') / b`.
-    pub(crate) fn over(self, other: Dual) -> Dual {
-        let inverse = other.0[0].inverse();
-        let value = self.0[0] * inverse;
-        let slope = |k: usize| (self.0[k] - value * other.0[k]) * inverse;
-        Dual([value, slope(1), slope(2)])
-    }
-}
-
-impl Add for Dual {
-    type Output = Dual;
-    fn add(self, other: Dual) -> Dual {
-        Dual([0, 1, 2].map(|k| self.0[k] + other.0[k]))
-    }
-}
-
-impl Neg for Dual {
-    type Output = Dual;
-    fn neg(self) -> Dual {
-        Dual(self.0.map(Ball::neg))
-    }
-}
-
-impl Sub for Dual {
-    type Output = Dual;
-    fn sub(self, other: Dual) -> Dual {
-        self + -other
-    }
-}
-
-impl Mul for Dual {
-    type Output = Dual;
-    #[allow(clippy::suspicious_arithmetic_impl, reason = "the product rule has a sum")]
-    fn mul(self, other: Dual) -> Dual {
-        let ([a, ..], [b, ..]) = (self.0, other.0);
-        let slope = |k: usize| a * other.0[k] + self.0[k] * b;
-        Dual([a * b, slope(1), slope(2)])
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -259,9 +174,6 @@ mod tests {
                 if q != RBig::ZERO {
                     check(wide.inverse(), RBig::ONE / &q);
                 }
-                // Three and four make five.
-                let five = length([wide * Ball::exact(3.0), wide * Ball::exact(-4.0)]);
-                check(five, exact(5.0) * if q < RBig::ZERO { -q } else { q });
             }
         }
         assert!(answers > 20_000, "{answers}");
@@ -269,8 +181,9 @@ mod tests {
 
     #[test]
     fn signs_are_claimed_only_when_known() {
-        assert!(Ball::between(0.5, 2.0).is_positive() && Ball::between(-2.0, -0.5).is_negative());
-        for ball in [Ball::between(0.0, 1.0), Ball::UNKNOWN, Ball { middle: f64::NAN, radius: 1.0 }, Ball::ZERO] {
+        let between = |low: f64, high: f64| Ball { middle: 0.5 * (low + high), radius: 0.5 * (high - low) };
+        assert!(between(0.5, 2.0).is_positive() && between(-2.0, -0.5).is_negative());
+        for ball in [between(0.0, 1.0), Ball::UNKNOWN, Ball { middle: f64::NAN, radius: 1.0 }, Ball::ZERO] {
             assert!(!ball.is_positive() && !ball.is_negative());
             assert!(!(ball.inverse() * ball).is_negative() && !ball.inverse().is_positive());
         }
@@ -290,18 +203,6 @@ mod tests {
             count += 1;
         }
         assert!(count > 5, "{count}");
-        assert!(!Ball::ZERO.sqrt().is_positive() && !Ball::between(-1.0, 2.0).sqrt().is_positive());
-    }
-
-    #[test]
-    fn derivatives_follow_the_rules() {
-        // u = 3 + 2 a, v = 5 - b, at a = b = 0.
-        let (u, v) = (Dual([3.0, 2.0, 0.0].map(Ball::exact)), Dual([5.0, 0.0, -1.0].map(Ball::exact)));
-        let near = |found: Dual, wanted: [f64; 3]| {
-            assert!((0..3).all(|k| (found.0[k].middle - wanted[k]).abs() <= found.0[k].radius + 1e-15), "{found:?}");
-        };
-        near(u * v, [15.0, 10.0, -3.0]);
-        near(u.over(v), [0.6, 0.4, 0.12]);
-        near(u - v.scaled(Ball::exact(2.0)), [-7.0, 2.0, 2.0]);
+        assert!(!Ball::ZERO.sqrt().is_positive() && !Ball { middle: 0.5, radius: 1.5 }.sqrt().is_positive());
     }
 }

@@ -19,6 +19,7 @@
 //! shells also the number of pairs, of a source triangle and a prism, whose boxes meet. Composite mean value maps and complex maps: for each
 //! step some hundred to thousand boxes for each vertex, each of `O(N)`; on all processors.
 
+mod affine;
 mod archive;
 mod ball;
 mod bundle;

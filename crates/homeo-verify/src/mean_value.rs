@@ -1,6 +1,6 @@
 //! The Jacobian determinant of a mean value map, enclosed in boxes of charts up to edges and vertices.
 //!
-//! Formulas (0) to (4) of `docs/theory/composite.md`, in balls, differentiated forwards. A triangle of the tiling is cut
+//! Formulas (0) to (4) of `docs/theory/composite.md`, in affine forms, differentiated forwards. A triangle of the tiling is cut
 //! into charts `v + s (e0 + λ e1)`, `0 <= s, λ <= 1`, that hold no vertex of the domain but perhaps `v`, and touch no
 //! edge but perhaps one along `λ = 0`. What is singular there cancels by hand:
 //!
@@ -17,7 +17,7 @@ mod speeds;
 
 pub(crate) use speeds::{MOST_DEGREE, Speeds};
 
-use crate::ball::{Ball, Dual, Vector, cross, dot, length, vector};
+use crate::affine::{Dual, Form, Vector, cross, dot, length, vector};
 use fit::Fit;
 use speeds::Line;
 
@@ -80,13 +80,13 @@ impl Step<'_> {
         let [a, b, c] = triangle;
         let turned = [[a, b, c], [b, c, a], [c, a, b]];
         let find = |wanted: [bool; 3]| turned.into_iter().find(|t| t.map(|corner| self.is_vertex(corner)) == wanted);
-        let fractions = |whole: f64, part: f64| Ball::exact(whole) * Ball::exact(part).inverse();
-        let (one, half) = (Ball::ONE, Ball::exact(0.5));
+        let fractions = |whole: f64, part: f64| Form::exact(whole) * Form::exact(part).inverse();
+        let (one, half) = (Form::ONE, Form::exact(0.5));
         // Multiples of the sides from the apex: `e0 = f0 side`, `e1 = f1 side + f2 other`.
         let whole = [one, -one, one];
         let half_of = [half, -half, one];
         let sixth = [half, fractions(-1.0, 6.0), fractions(1.0, 3.0)];
-        let both = |[v, from, to]: [u32; 3], parts: [Ball; 3], back: [u32; 3]| {
+        let both = |[v, from, to]: [u32; 3], parts: [Form; 3], back: [u32; 3]| {
             [self.chart([v, from, to], parts), self.chart(back, parts)]
         };
         if let Some(corners) = find([false; 3]).or_else(|| find([true, false, false])) {
@@ -98,7 +98,7 @@ impl Step<'_> {
         turned.into_iter().flat_map(|[v, from, to]| both([v, from, to], sixth, [v, to, from])).collect()
     }
 
-    fn chart(&self, [v, from, to]: [u32; 3], [f0, f1, f2]: [Ball; 3]) -> Chart {
+    fn chart(&self, [v, from, to]: [u32; 3], [f0, f1, f2]: [Form; 3]) -> Chart {
         let [at, from_at, to_at] = [v, from, to].map(|corner| self.corner(corner));
         let side = difference(from_at, at);
         let other = difference(to_at, at);
@@ -114,7 +114,7 @@ impl Step<'_> {
 }
 
 fn difference(a: Point2, b: Point2) -> Vector {
-    vector(|k| Ball::exact(a[k]) - Ball::exact(b[k]))
+    vector(|k| Form::exact(a[k]) - Form::exact(b[k]))
 }
 
 /// A vertex as seen from a point of the domain.
@@ -146,7 +146,7 @@ pub(crate) struct Frame<'a> {
 
 /// What is known in a box of a chart.
 pub(crate) struct Enclosure {
-    pub(crate) determinant: Ball,
+    pub(crate) determinant: Form,
     /// Whether `λ` should be halved, or else `s`.
     pub(crate) splits_lambda: bool,
 }
@@ -160,7 +160,7 @@ impl<'a> Frame<'a> {
         let offsets: Vec<_> = step.points.iter().zip(step.images).map(offset).collect();
         let edge = |(&p, &next): (&Point2, &u32)| difference(step.points[next as usize], p);
         let edges = step.points.iter().zip(step.next).map(edge).collect();
-        let nothing = Seen { towards: [Ball::ZERO; 2], distance: Dual::ZERO, inverse: Dual::ZERO };
+        let nothing = Seen { towards: [Form::ZERO; 2], distance: Dual::ZERO, inverse: Dual::ZERO };
         let (seen, tangents) = (vec![nothing; offsets.len()], vec![Dual::ZERO; offsets.len()]);
         let line = |(i, &j): (usize, &u32)| {
             let ends = |points: &[Point2]| [points[i], points[j as usize]];
@@ -173,14 +173,14 @@ impl<'a> Frame<'a> {
 
     /// Encloses the determinant over a box of `s` and `λ`.
     pub(crate) fn enclose(&mut self, s: [f64; 2], lambda: [f64; 2]) -> Enclosure {
-        let [ball_s, ball_lambda] = [s, lambda].map(|[low, high]| Ball::between(low, high));
+        let [form_s, form_lambda] = [Form::between(s, 0), Form::between(lambda, 1)];
         let [e0, e1] = self.chart.axes;
-        let along = vector(|k| e0[k] + ball_lambda * e1[k]);
-        let middle = [0, 1].map(|k| ball_s.middle * along[k].middle);
+        let along = vector(|k| e0[k] + form_lambda * e1[k]);
+        let middle = [0, 1].map(|k| form_s.middle * along[k].middle);
         let (fit, nearest) = self.fit(middle);
         let determinant = match self.is_at_vertex {
-            true => self.at_vertex(ball_s, ball_lambda, along, fit),
-            false => self.inside(vector(|k| ball_s * along[k]), fit),
+            true => self.at_vertex(form_s, form_lambda, along, fit),
+            false => self.inside(vector(|k| form_s * along[k]), fit),
         };
         let size = |v: Vector| v[0].middle.hypot(v[1].middle);
         let width = size(e1) * (lambda[1] - lambda[0]);
@@ -190,30 +190,30 @@ impl<'a> Frame<'a> {
     }
 
     /// Formula (0), at `v + position`.
-    fn inside(&mut self, position: Vector, fit: Fit) -> Ball {
-        let motion = [[Ball::ONE, Ball::ZERO], [Ball::ZERO, Ball::ONE]];
+    fn inside(&mut self, position: Vector, fit: Fit) -> Form {
+        let motion = [[Form::ONE, Form::ZERO], [Form::ZERO, Form::ONE]];
         self.look(position, motion, None);
         let [weight, x, y] = self.sums(None, fit);
         let rest = [x.over(weight), y.over(weight)];
-        let column = |k: usize| vector(|row| Ball::exact(fit.matrix[row][k]) + rest[row].0[k + 1]);
+        let column = |k: usize| vector(|row| Form::exact(fit.matrix[row][k]) + rest[row].0[k + 1]);
         cross(column(0), column(1))
     }
 
     /// Formula (4), at `v + s along`. In the place of `∂/∂λ` stands `∂/∂λ - c s ∂/∂s`, which goes almost across.
-    fn at_vertex(&mut self, s: Ball, lambda: Ball, along: Vector, fit: Fit) -> Ball {
+    fn at_vertex(&mut self, s: Form, lambda: Form, along: Vector, fit: Fit) -> Form {
         let [e0, e1] = self.chart.axes;
         let turn = cross(e0, e1);
-        let skew = Ball::exact(dot(e1, along).middle / dot(along, along).middle);
+        let skew = Form::exact(dot(e1, along).middle / dot(along, along).middle);
         let across = vector(|k| e1[k] - skew * along[k]);
         let motion = [along, across.map(|x| s * x)];
         let apex = self.chart.apex as usize;
         self.look(vector(|k| s * along[k]), motion, Some(apex));
         // `e` itself only depends on `λ`.
         let size = length(along);
-        let length = Dual([size, Ball::ZERO, dot(along, e1) * size.inverse()]);
-        let by_length = Dual::constant(Ball::ONE).over(length);
-        let s_dual = Dual([s, Ball::ONE, -(skew * s)]);
-        let kappa = Dual([lambda, Ball::ZERO, Ball::ONE]);
+        let length = Dual([size, Form::ZERO, dot(along, e1) * size.inverse()]);
+        let by_length = Dual::constant(Form::ONE).over(length);
+        let s_dual = Dual([s, Form::ONE, -(skew * s)]);
+        let kappa = Dual([lambda, Form::ZERO, Form::ONE]);
         let (mut own, mut touched) = (Dual::ZERO, None);
         // By edges at the apex; by the one that is touched, times `λ`.
         let (mut added, mut added_touched) = ([Dual::ZERO; 2], [Dual::ZERO; 2]);
@@ -223,7 +223,7 @@ impl<'a> Frame<'a> {
         ] {
             let is_touched = touch == self.chart.touch;
             let tangent = self.tangent_at_vertex(other as usize, touch, along, length, motion);
-            let factor = if is_touched { kappa } else { Dual::constant(Ball::ONE) };
+            let factor = if is_touched { kappa } else { Dual::constant(Form::ONE) };
             let more = self.added_at_apex([edge, other as usize], touch, along, [tangent, by_length, s_dual, factor]);
             if is_touched {
                 touched = Some((tangent, other as usize));
@@ -250,7 +250,7 @@ impl<'a> Frame<'a> {
         let g = vector(|k| rest[k].0[0] + s * rest[k].0[1]);
         let h = vector(|k| rest[k].0[2] - skew * rest[k].0[0]);
         let mixed = cross(fit.apply(along), h) + cross(g, fit.apply(across)) + cross(g, h);
-        let [row, other] = fit.matrix.map(|row| row.map(Ball::exact));
+        let [row, other] = fit.matrix.map(|row| row.map(Form::exact));
         cross(row, other) + mixed * turn.inverse()
     }
 
@@ -300,15 +300,15 @@ impl<'a> Frame<'a> {
         let [e0, e1] = self.chart.axes;
         let seen = &self.seen[other];
         let offset = self.offsets[other][0];
-        let sign = |x: Ball| if touch == Touch::Begin { x } else { -x };
+        let sign = |x: Form| if touch == Touch::Begin { x } else { -x };
         // The vector to the apex is `-s e`: what follows is divided by `s`, and `e x (vector to the other end)` is constant.
         let cosine =
             Dual([-dot(along, seen.towards), dot(along, motion[0]), dot(along, motion[1]) - dot(e1, seen.towards)]);
         let product = length * seen.distance;
         if touch == self.chart.touch {
-            return (product - cosine).scaled((sign(cross(e0, e1)) * Ball::exact(2.0)).inverse());
+            return (product - cosine).scaled((sign(cross(e0, e1)) * Form::exact(2.0)).inverse());
         }
-        let sine = Dual([sign(cross(offset, along)), Ball::ZERO, sign(cross(offset, e1))]);
+        let sine = Dual([sign(cross(offset, along)), Form::ZERO, sign(cross(offset, e1))]);
         half_tangent(sine, cosine, product)
     }
 
@@ -316,7 +316,7 @@ impl<'a> Frame<'a> {
     fn residual(&self, vertex: usize, fit: Fit) -> Vector {
         let [p, q] = self.offsets[vertex];
         let there = fit.apply(p);
-        vector(|k| q[k] - Ball::exact(fit.shift[k]) - there[k])
+        vector(|k| q[k] - Form::exact(fit.shift[k]) - there[k])
     }
 
     /// The sums of weights, and of weights times residuals, of all vertices but the apex; with what speeds add.

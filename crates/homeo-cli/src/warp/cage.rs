@@ -126,6 +126,8 @@ fn check_options(options: &WarpArgs) -> Result<&Path> {
         ("--pair", options.polygons.pair.is_some()),
         ("--map", options.map.is_some()),
         ("--field", options.field.is_some()),
+        ("--triangles", options.polygons.triangles.is_some()),
+        ("--middle", options.polygons.middle.is_some()),
     ];
     if let Some((name, _)) = refused.iter().find(|(_, is_given)| *is_given) {
         return Err(Failure::usage(format!("{name} is for polygons, not for cages")));

@@ -40,9 +40,7 @@ pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Resu
     }
     cage::refuse_options(options)?;
     check_outputs(options)?;
-    if options.degree.is_some() && options.method != Some(MethodName::Complex) {
-        return Err(Failure::usage("--degree is that of the speeds of --method complex"));
-    }
+    polygons::check_method(options)?;
     session.stage("read");
     let input = Input::read(&options.input)?;
     #[cfg(feature = "gpu")]
@@ -111,8 +109,8 @@ fn make(session: &Session, options: &WarpArgs) -> Result<Made> {
     let map =
         harmonic_map(&pair, params(&options.polygons, turn), session).map_err(|error| explain(session, &error))?;
     let made = json!({
-        "method": "harmonic", "triangles": options.polygons.triangles, "turn_degrees": turn,
-        "middle": name(options.polygons.middle),
+        "method": "harmonic", "triangles": options.polygons.triangles(), "turn_degrees": turn,
+        "middle": name(options.polygons.middle()),
     });
     Ok(piecewise_linear(map.into(), made))
 }
@@ -157,7 +155,7 @@ fn check_outputs(options: &WarpArgs) -> Result<()> {
 
 /// What is asked of the map.
 pub fn params(options: &PolygonArgs, turn: Option<f64>) -> HarmonicParams {
-    HarmonicParams { triangles: options.triangles, middle: shape(options.middle), turn_degrees: turn }
+    HarmonicParams { triangles: options.triangles(), middle: shape(options.middle()), turn_degrees: turn }
 }
 
 fn shape(name: MiddleName) -> MiddleShape {

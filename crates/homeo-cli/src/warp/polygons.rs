@@ -6,8 +6,25 @@ use homeo::shape::{ClosedSpline, sample_closed};
 use homeo_core::planar::{DomainPair, PairError, PlanarDomain, Point2, RingPair, read_pair, read_rings, read_svg};
 use serde_json::Value;
 
-use crate::args::PolygonArgs;
+use crate::args::{MethodName, PolygonArgs, WarpArgs};
 use crate::failure::{Failure, Result};
+
+/// Refuses options of another method than the one that is asked for.
+pub fn check_method(options: &WarpArgs) -> Result<()> {
+    if options.degree.is_some() && options.method != Some(MethodName::Complex) {
+        return Err(Failure::usage("--degree is that of the speeds of --method complex"));
+    }
+    let asked = match options.method {
+        Some(MethodName::MeanValue) => "--method mean-value",
+        Some(MethodName::Complex) => "--method complex",
+        _ if options.landmarks.is_some() => "--landmarks",
+        _ => return Ok(()),
+    };
+    match options.polygons.harmonic_option() {
+        Some(name) => Err(Failure::usage(format!("{name} is for --method harmonic, not for {asked}"))),
+        None => Ok(()),
+    }
+}
 
 /// The pair that is asked for, and by how many degrees its hole shall turn.
 pub fn read(options: &PolygonArgs) -> Result<(DomainPair, Option<f64>)> {

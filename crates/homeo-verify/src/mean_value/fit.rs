@@ -1,6 +1,6 @@
 //! What makes enclosures narrow: an affine map that is taken off, chosen in doubles, without influence on exact results.
 
-use super::{Ball, Frame, Point2, Vector, vector};
+use super::{Form, Frame, Point2, Vector, vector};
 
 /// An affine map near the mean value map, by doubles: what it misses of the images is little.
 #[derive(Clone, Copy)]
@@ -13,7 +13,7 @@ pub(super) struct Fit {
 impl Fit {
     /// What it does to a vector.
     pub(super) fn apply(&self, v: Vector) -> Vector {
-        vector(|k| Ball::exact(self.matrix[k][0]) * v[0] + Ball::exact(self.matrix[k][1]) * v[1])
+        vector(|k| Form::exact(self.matrix[k][0]) * v[0] + Form::exact(self.matrix[k][1]) * v[1])
     }
 }
 

@@ -8,7 +8,7 @@
 //!
 //! At an end of the edge `s γ` and `(σ(x) - x) / s` stand in their place, which are finite up to `s = 0`.
 
-use super::{Ball, Dual, Frame, Seen, Touch, Vector, difference, dot, vector};
+use super::{Dual, Form, Frame, Seen, Touch, Vector, difference, dot, vector};
 
 /// Degrees of speeds go up to this.
 pub(crate) const MOST_DEGREE: usize = 8;
@@ -16,7 +16,7 @@ pub(crate) const MOST_DEGREE: usize = 8;
 /// The polynomials `q` of all edges.
 pub(crate) struct Speeds {
     /// Of each edge, for each order: the differences of the Bernstein coefficients, times a binomial coefficient.
-    differences: Vec<Vec<Vec<Ball>>>,
+    differences: Vec<Vec<Vec<Form>>>,
 }
 
 impl Speeds {
@@ -28,30 +28,30 @@ impl Speeds {
 
     /// `q` of an edge, by its derivatives at the middle of what is known of `x`: so small numbers are raised to powers.
     fn quotient(&self, edge: usize, x: Dual) -> Dual {
-        let middle = Ball::exact(x.0[0].middle);
+        let middle = Form::exact(x.0[0].middle);
         let step = x - Dual::constant(middle);
-        let add = |sum: Dual, row: &Vec<Ball>| sum * step + Dual::constant(in_bernstein_form(row, middle));
+        let add = |sum: Dual, row: &Vec<Form>| sum * step + Dual::constant(in_bernstein_form(row, middle));
         self.differences[edge].iter().rev().fold(Dual::ZERO, add)
     }
 }
 
 /// The Bernstein coefficients of `(σ(x) - x) / (x (1 - x))`, of degree `d - 2`: those of `σ(x) - x` are `c_k - k / d`, and
 /// binomial coefficients of `d` over those of `d - 2` make the factors.
-fn coefficients(values: &[f64], degree: usize) -> Vec<Ball> {
-    let number = |n: usize| Ball::exact(n as f64);
+fn coefficients(values: &[f64], degree: usize) -> Vec<Form> {
+    let number = |n: usize| Form::exact(n as f64);
     let of = |k: usize| {
-        let deviation = number(degree) * Ball::exact(values[k]) - number(k);
+        let deviation = number(degree) * Form::exact(values[k]) - number(k);
         deviation * number(degree - 1) * (number(k) * number(degree - k)).inverse()
     };
     (1..degree).map(of).collect()
 }
 
 /// Row `k`: the derivative of order `k` over `k!`, in Bernstein form.
-fn differences(coefficients: Vec<Ball>) -> Vec<Vec<Ball>> {
+fn differences(coefficients: Vec<Form>) -> Vec<Vec<Form>> {
     let count = coefficients.len();
     let mut rows = vec![coefficients];
     for k in 1..count {
-        let factor = Ball::exact((count - k) as f64) * Ball::exact(k as f64).inverse();
+        let factor = Form::exact((count - k) as f64) * Form::exact(k as f64).inverse();
         let row = rows[k - 1].windows(2).map(|pair| factor * (pair[1] - pair[0])).collect();
         rows.push(row);
     }
@@ -59,10 +59,10 @@ fn differences(coefficients: Vec<Ball>) -> Vec<Vec<Ball>> {
 }
 
 /// De Casteljau's algorithm.
-fn in_bernstein_form(coefficients: &[Ball], x: Ball) -> Ball {
-    let mut points = [Ball::ZERO; MOST_DEGREE];
+fn in_bernstein_form(coefficients: &[Form], x: Form) -> Form {
+    let mut points = [Form::ZERO; MOST_DEGREE];
     points[..coefficients.len()].copy_from_slice(coefficients);
-    let rest = Ball::ONE - x;
+    let rest = Form::ONE - x;
     for count in (1..coefficients.len()).rev() {
         for k in 0..count {
             points[k] = rest * points[k] + x * points[k + 1];
@@ -110,7 +110,7 @@ impl Frame<'_> {
             if apex.is_none_or(|v| v != i && v != j) {
                 let (before, after) = (self.seen[i].inverse, self.seen[j].inverse);
                 let x = self.places[i];
-                let deviation = x * (Dual::constant(Ball::ONE) - x) * speeds.quotient(i, x);
+                let deviation = x * (Dual::constant(Form::ONE) - x) * speeds.quotient(i, x);
                 let [re, im] = line.term([self.tangents[i] * (before + after), after - before], deviation);
                 sums = [sums[0] + re, sums[1] + im];
             }
@@ -128,8 +128,8 @@ impl Frame<'_> {
         [tangent, by_length, s, factor]: [Dual; 4],
     ) -> [Dual; 2] {
         let Some(speeds) = self.step.speeds else { return [Dual::ZERO; 2] };
-        let (line, one) = (&self.lines[edge], Dual::constant(Ball::ONE));
-        let rate = Dual([dot(along, line.measure), Ball::ZERO, dot(self.chart.axes[1], line.measure)]);
+        let (line, one) = (&self.lines[edge], Dual::constant(Form::ONE));
+        let rate = Dual([dot(along, line.measure), Form::ZERO, dot(self.chart.axes[1], line.measure)]);
         let rate = if end == Touch::Begin { rate } else { -rate };
         // The distance from the apex along the edge is `s` times the rate.
         let from_apex = s * rate;
@@ -167,13 +167,14 @@ mod tests {
             let speeds = Speeds::new(values, values.len() - 1);
             for k in -7..14 {
                 let x = f64::from(k) / 5.0 + 0.03;
-                let known = Dual([Ball { middle: x, radius: 0.01 }, Ball::ONE, Ball::ZERO]);
+                let known = Dual([Form::between([x - 0.01, x + 0.01], 0), Form::ONE, Form::ZERO]);
                 let found = speeds.quotient(0, known).0;
                 let quotient = |x: f64| (speed(values, x) - x) / (x * (1.0 - x));
                 let slope = |x: f64| (quotient(x + 1e-5) - quotient(x - 1e-5)) / 2e-5;
                 for at in [x - 0.01, x, x + 0.01] {
                     let errors = [quotient(at) - found[0].middle, slope(at) - found[1].middle];
-                    let allowed = [found[0].radius, found[1].radius].map(|radius| radius + 1e-6 * (1.0 + radius));
+                    let allowed =
+                        [found[0].deviation(), found[1].deviation()].map(|radius| radius + 1e-6 * (1.0 + radius));
                     assert!(
                         errors[0].abs() <= allowed[0] && errors[1].abs() <= allowed[1],
                         "{values:?} {at}: {found:?}"
@@ -182,7 +183,7 @@ mod tests {
                 }
                 // Not so where the control values are others.
                 let wrong = Speeds::new(&values.iter().map(|c| c * c).collect::<Vec<_>>(), values.len() - 1);
-                let off = wrong.quotient(0, Dual::constant(Ball::exact(x))).0[0].middle - quotient(x);
+                let off = wrong.quotient(0, Dual::constant(Form::exact(x))).0[0].middle - quotient(x);
                 assert!(off.abs() > 1e-6, "{values:?} {x}");
             }
         }

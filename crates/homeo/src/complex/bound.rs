@@ -52,6 +52,11 @@ impl Problem<'_> {
         JacobianVerdict::Positive { least, boxes }
     }
 
+    /// The first point of some at which the map is proved to fold, with an upper bound of the determinant.
+    pub fn first_fold(&self, points: &[Point2]) -> Option<(Point2, f64)> {
+        points.iter().find_map(|&point| Some((point, self.proved_fold(point)?)))
+    }
+
     /// A point where the map is proved to fold, if one of some samples is such: that of the least determinant.
     fn sampled_fold(&self, cover: &Cover) -> Option<(Point2, f64)> {
         let mut frame = Frame::<f64>::new(self.outline, self.speeds);

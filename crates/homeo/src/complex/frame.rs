@@ -71,6 +71,9 @@ pub(super) struct Frame<'a, T> {
     quotients: Vec<Vec<T>>,
     seen: Vec<Seen<T>>,
     tangents: Vec<Dual<T>>,
+    /// The factor of the tangents, and the sum of all weights, where the map was evaluated last.
+    factor: Dual<T>,
+    weight: Dual<T>,
 }
 
 /// A vertex as seen from the point; its own vertex in a corner with everything over `s`.
@@ -96,6 +99,16 @@ fn apply<T: Number>(linear: [[f64; 2]; 2], v: Vector<T>) -> Vector<T> {
     linear.map(|row| T::of(row[0]) * v[0] + T::of(row[1]) * v[1])
 }
 
+/// The coordinates of a corner as functions of themselves: `s`, and both coordinates of `e = a + λ (b - a)`.
+fn polar<T: Number>([a, b]: [Vector<T>; 2], [s, lambda]: Vector<T>) -> [Dual<T>; 3] {
+    let (zero, one) = (T::of(0.0), T::of(1.0));
+    let e = |k: usize| {
+        let across = b[k] - a[k];
+        Dual { value: a[k] + lambda * across, by: [zero, across] }
+    };
+    [Dual { value: s, by: [one, zero] }, e(0), e(1)]
+}
+
 impl<'a, T: Number> Frame<'a, T> {
     pub fn new(outline: &'a Outline, speeds: &EdgeSpeeds) -> Self {
         let quotients = (0..outline.count()).map(|i| speeds.quotient(i)).collect();
@@ -110,7 +123,8 @@ impl<'a, T: Number> Frame<'a, T> {
             [[x / square, y / square], difference(outline.images[k], outline.images[i])]
         };
         let directions = (0..outline.count()).map(direction).collect();
-        Self { outline, directions, quotients, seen: Vec::new(), tangents: Vec::new() }
+        let one = Dual::constant(T::of(1.0));
+        Self { outline, directions, quotients, seen: Vec::new(), tangents: Vec::new(), factor: one, weight: one }
     }
 
     pub fn quotients_mut(&mut self) -> &mut [Vec<T>] {
@@ -125,6 +139,23 @@ impl<'a, T: Number> Frame<'a, T> {
         }
     }
 
+    /// How the derivatives change with the quotient of an edge, where the map was evaluated last, with other quotients: they
+    /// are linear in all of them.
+    pub fn response(&self, edge: usize, chart: &Chart<T>, at: Vector<T>) -> [Vector<T>; 2] {
+        let corner = match *chart {
+            Chart::Plane => None,
+            Chart::Corner { vertex, a, b } => {
+                let [s, x, y] = polar([a, b], at);
+                Some((vertex, s, [x, y]))
+            }
+        };
+        let rest = self.correction(edge, corner, self.factor).map(|n| n / self.weight);
+        match corner {
+            None => [0, 1].map(|l| rest.map(|r| r.by[l])),
+            Some((_, s, _)) => [rest.map(|r| r.value + s.value * r.by[0]), rest.map(|r| r.by[1])],
+        }
+    }
+
     /// `h = k + M (z - o) + N / W`.
     fn in_plane(&mut self, at: Vector<T>, guide: &Guide) -> Local<T> {
         let (zero, one) = (T::of(0.0), T::of(1.0));
@@ -134,6 +165,7 @@ impl<'a, T: Number> Frame<'a, T> {
         self.look(|i| std::array::from_fn(|k| Dual::constant(T::of(outline.vertices[i][k])) - point[k]));
         let factor = self.measure_angles(guide.wide);
         let sums = self.sum(None, factor, guide);
+        (self.factor, self.weight) = (factor, sums.weight);
         let rest = sums.numerator.map(|n| n / sums.weight);
         let base = apply(guide.linear, std::array::from_fn(|k| at[k] - T::of(guide.origin[k])));
         let column = |l: usize| std::array::from_fn(|k| T::of(guide.linear[k][l]) + rest[k].by[l]);
@@ -146,10 +178,9 @@ impl<'a, T: Number> Frame<'a, T> {
 
     /// `h = h_v + s (M e + G)`, `G = N / (s W)`; derivatives are `M e + G + s G_s` and `M (b - a) + G_λ`.
     fn in_corner(&mut self, vertex: usize, [a, b]: [Vector<T>; 2], [s, lambda]: Vector<T>, guide: &Guide) -> Local<T> {
-        let (zero, one) = (T::of(0.0), T::of(1.0));
         let across: Vector<T> = std::array::from_fn(|k| b[k] - a[k]);
-        let e: [Dual<T>; 2] = std::array::from_fn(|k| Dual { value: a[k] + lambda * across[k], by: [zero, across[k]] });
-        let s = Dual { value: s, by: [one, zero] };
+        let [s, x, y] = polar([a, b], [s, lambda]);
+        let e = [x, y];
         let outline = self.outline;
         self.look(|i| {
             let far: Vector<T> = difference(outline.vertices[i], outline.vertices[vertex]);
@@ -157,6 +188,7 @@ impl<'a, T: Number> Frame<'a, T> {
         });
         let factor = self.measure_angles(guide.wide);
         let sums = self.sum(Some((vertex, s, e)), factor, guide);
+        (self.factor, self.weight) = (factor, sums.weight);
         let rest = sums.numerator.map(|n| n / sums.weight);
         let e = e.map(|c| c.value);
         let (along_e, along_side) = (apply(guide.linear, e), apply(guide.linear, across));

@@ -138,7 +138,11 @@ impl ComplexMap {
         }
         let is_cancelled = || progress.is_cancelled();
         progress.stage("speeds");
-        let mut search = Search::new(&outline, [&pair.source, &pair.target], params.degree, params.grid.max(1));
+        let domains = [&pair.source, &pair.target];
+        let mut search = Search::new(&outline, domains, params.degree, params.grid.max(1), &is_cancelled);
+        if is_cancelled() {
+            return Err(ComplexError::Stopped);
+        }
         let linear = search.least();
         let mut rounds = 0;
         loop {
@@ -146,6 +150,10 @@ impl ComplexMap {
             let speeds = search.speeds()?;
             progress.stage("proof");
             let problem = Problem { outline: &outline, domain: &pair.source, speeds: &speeds };
+            // Best speeds that fold at samples do not get better by more samples.
+            if let Some((point, at_most)) = problem.first_fold(&search.folds()) {
+                return Err(ComplexError::Folds { point, at_most });
+            }
             let verdict = problem.bound(&params.limits, &is_cancelled);
             if is_cancelled() {
                 return Err(ComplexError::Stopped);

@@ -27,6 +27,7 @@ type Pair = [[f64; 2]; 2];
 
 /// The derivatives at a sample, and how they change with each deviation.
 struct Sample {
+    point: Point2,
     along: Pair,
     by: Vec<Pair>,
     /// Over the turn of the chart and the ratio of areas.
@@ -40,6 +41,8 @@ pub(super) struct Search<'a> {
     /// Derivatives by control values are for a map of areas with this ratio.
     ratio: f64,
     samples: Vec<Sample>,
+    /// The quotient that each inner control value adds to.
+    basis: Vec<Vec<f64>>,
     /// Of each edge `d` positive numbers that add up to 1.
     increments: Vec<Vec<f64>>,
 }
@@ -49,21 +52,36 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl<'a> Search<'a> {
-    /// From linear speeds, with samples in corners, on edges and on a grid of so many points along the longer side.
-    pub fn new(outline: &'a Outline, domains: [&PlanarDomain; 2], degree: usize, grid: usize) -> Self {
+    /// From linear speeds, with samples in corners, on edges and on a grid of so many points along the longer side; with fewer
+    /// if it is cancelled.
+    pub fn new(
+        outline: &'a Outline,
+        domains: [&PlanarDomain; 2],
+        degree: usize,
+        grid: usize,
+        is_cancelled: &(dyn Fn() -> bool + Sync),
+    ) -> Self {
         let [source, target] = domains.map(area);
         let increments = vec![vec![1.0 / degree as f64; degree]; outline.count()];
-        let mut this = Self { outline, degree, ratio: target / source, samples: Vec::new(), increments };
+        let unit = |k: usize| (0..degree - 1).map(|l| f64::from(u8::from(k == l))).collect::<Vec<f64>>();
+        let basis = (0..degree - 1).map(|k| power_form(degree, &unit(k))).collect();
+        let mut this = Self { outline, degree, ratio: target / source, samples: Vec::new(), basis, increments };
         let cover = Cover::new(outline, domains[0]);
         let mut frame = this.frame();
         for piece in cover.pieces.iter().filter(|piece| piece.vertex().is_some()) {
+            if is_cancelled() {
+                return this;
+            }
             for at in CORNER {
                 let point = piece.place(outline, at);
                 let guide = Guide::at(outline, point, piece.vertex(), piece.direction(at[1]));
-                this.add(&mut frame, &piece.rounded(), at, &guide);
+                this.add(&mut frame, (&piece.rounded(), at), point, &guide);
             }
         }
         for [p, q] in domains[0].edges() {
+            if is_cancelled() {
+                return this;
+            }
             for share in (1..EDGE).map(|k| k as f64 / EDGE as f64) {
                 this.add_point(&mut frame, [0, 1].map(|k| p[k] + share * (q[k] - p[k])));
             }
@@ -73,6 +91,9 @@ impl<'a> Search<'a> {
         let count = |axis: usize| ((high[axis] - low[axis]) / step).ceil() as usize;
         for (x, y) in (0..count(0)).flat_map(|x| (0..count(1)).map(move |y| (x, y))) {
             let point = [low[0] + (x as f64 + 0.5) * step, low[1] + (y as f64 + 0.5) * step];
+            if is_cancelled() {
+                return this;
+            }
             if domains[0].contains(point) {
                 this.add_point(&mut frame, point);
             }
@@ -92,27 +113,23 @@ impl<'a> Search<'a> {
 
     fn add_point(&mut self, frame: &mut Frame<f64>, point: Point2) {
         let guide = Guide::at(self.outline, point, None, [0.0; 2]);
-        self.add(frame, &Chart::Plane, point, &guide);
+        self.add(frame, (&Chart::Plane, point), point, &guide);
     }
 
-    fn add(&mut self, frame: &mut Frame<f64>, chart: &Chart<f64>, at: [f64; 2], guide: &Guide) {
-        let inner = self.degree - 1;
+    fn add(&mut self, frame: &mut Frame<f64>, (chart, at): (&Chart<f64>, [f64; 2]), point: Point2, guide: &Guide) {
         let plain = frame.evaluate(chart, at, guide);
-        let mut by = Vec::with_capacity(self.outline.count() * inner);
+        let mut by = Vec::with_capacity(self.outline.count() * self.basis.len());
         for edge in 0..self.outline.count() {
-            for k in 0..inner {
-                let mut deviations = vec![0.0; inner];
-                deviations[k] = 1.0;
-                frame.quotients_mut()[edge] = power_form(self.degree, &deviations);
-                let with = frame.evaluate(chart, at, guide).along;
-                by.push([0, 1].map(|a| [0, 1].map(|c| with[a][c] - plain.along[a][c])));
+            for quotient in &self.basis {
+                frame.quotients_mut()[edge].copy_from_slice(quotient);
+                by.push(frame.response(edge, chart, at));
             }
             frame.quotients_mut()[edge].fill(0.0);
         }
         let factor = 1.0 / (plain.turn * self.ratio);
         let is_good = plain.along.iter().chain(by.iter().flatten()).flatten().all(|x| x.is_finite());
         if is_good && factor.is_finite() {
-            self.samples.push(Sample { along: plain.along, by, factor });
+            self.samples.push(Sample { point, along: plain.along, by, factor });
         }
     }
 
@@ -129,19 +146,31 @@ impl<'a> Search<'a> {
         all
     }
 
+    /// Of each sample the derivatives, and the determinant over the ratio of areas.
+    fn sent(&self, deviations: &[f64]) -> Vec<(Pair, f64)> {
+        let send = |sample: &Sample| {
+            let mut along = sample.along;
+            for (by, d) in sample.by.iter().zip(deviations) {
+                (0..2).for_each(|a| (0..2).for_each(|c| along[a][c] += by[a][c] * d));
+            }
+            (along, cross(along[0], along[1]) * sample.factor)
+        };
+        self.samples.iter().map(send).collect()
+    }
+
+    /// Samples at which the determinant is negative, the least one first.
+    pub fn folds(&self) -> Vec<Point2> {
+        let sent = self.sent(&self.deviations(&self.increments));
+        let mut found: Vec<(f64, Point2)> =
+            sent.iter().zip(&self.samples).map(|((_, value), sample)| (*value, sample.point)).collect();
+        found.retain(|(value, _)| *value < 0.0);
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.into_iter().map(|(_, point)| point).collect()
+    }
+
     /// The smooth minimum, and its slopes by deviations.
     fn value(&self, deviations: &[f64], sharpness: f64, slopes: Option<&mut [f64]>) -> f64 {
-        let sent: Vec<(Pair, f64)> = self
-            .samples
-            .iter()
-            .map(|sample| {
-                let mut along = sample.along;
-                for (by, d) in sample.by.iter().zip(deviations) {
-                    (0..2).for_each(|a| (0..2).for_each(|c| along[a][c] += by[a][c] * d));
-                }
-                (along, cross(along[0], along[1]) * sample.factor)
-            })
-            .collect();
+        let sent = self.sent(deviations);
         let least = sent.iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
         let weight = |value: f64| (-sharpness * (value - least)).exp();
         let total: f64 = sent.iter().map(|(_, value)| weight(*value)).sum();
