@@ -176,6 +176,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
     let is_immersed = map.manifest.target == Target::ImmersedShell;
     let is_embedded = map.manifest.target == Target::EmbeddedShell;
     let is_canonical = map.manifest.target == Target::CanonicalDecomposition;
+    let has_section = map.manifest.target == Target::UnitTangentBundleWithSection;
     let (kind, theorem) = match map.manifest.kind {
         Kind::Foliation => ("foliation", "theorem on locally bipolar foliations, rules 1-8"),
         Kind::PiecewiseLinear => ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P"),
@@ -185,8 +186,11 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
         Kind::CompositeMeanValue => ("composite-mean-value", "theorem on composite mean value maps, rules D and C1-C3"),
         Kind::ComplexBarycentric => ("complex-barycentric", "theorem on complex maps with speeds, rules D and K1-K3"),
-        Kind::Hyperbolic if is_canonical => ("hyperbolic", "theorems on glued truncated tetrahedra and tilts, rules Y1-Y8"),
+        Kind::Hyperbolic if is_canonical => {
+            ("hyperbolic", "theorems on glued truncated tetrahedra and tilts, rules Y1-Y8")
+        }
         Kind::Hyperbolic => ("hyperbolic", "theorem on glued truncated tetrahedra, rules Y1-Y7"),
+        Kind::UnitTangentBundle if has_section => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T10"),
         Kind::UnitTangentBundle => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T8"),
     };
     let (target, onto) = match map.manifest.target {
@@ -204,6 +208,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::GeodesicBoundary => ("geodesic-boundary", "manifold"),
         Target::CanonicalDecomposition => ("canonical-decomposition", "manifold"),
         Target::UnitTangentBundle => ("unit-tangent-bundle", "surface"),
+        Target::UnitTangentBundleWithSection => ("unit-tangent-bundle-with-section", "surface"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
     let mut statement = format!(
@@ -265,13 +270,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         overlaps = "By Mostow and Prasad it is the only such structure of the manifold; the checker relies on this theorem for it.";
     }
     if let MapData::Bundle(data) = &map.data {
-        let (tetrahedra, triangles) = (data.tetrahedra.len(), data.triangles.len());
-        statement = format!(
-            "The mesh of {tetrahedra} tetrahedra is a closed oriented 3-manifold, and a bundle of circles of {} edges over the \
-             surface of {triangles} triangles in the file. Its Euler number is the Euler characteristic of the surface, so it \
-             is isomorphic to the bundle of unit tangent vectors ({theorem}).",
-            data.layers
-        );
+        statement = data.statement(theorem);
         overlaps = "That oriented circle bundles are classified by their Euler number is a theorem that the checker relies on.";
     }
     let limits = [

@@ -69,7 +69,14 @@ fn arrays(record: &Value) -> Arrays {
         }
     }
     let vertices = record["boundaryGenus"].as_array().unwrap().len();
-    Arrays { name: record["isoSig"].to_string(), gluings, cosh, radius: 1e-9, vertices, is_canonical: record["isCanonicalDecomposition"] == true }
+    Arrays {
+        name: record["isoSig"].to_string(),
+        gluings,
+        cosh,
+        radius: 1e-9,
+        vertices,
+        is_canonical: record["isCanonicalDecomposition"] == true,
+    }
 }
 
 #[test]

@@ -55,13 +55,13 @@ pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Re
         source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
-            "layers": options.layers, "weld": options.weld, "triangulate": options.triangulate,
+            "layers": options.layers, "field": options.field, "weld": options.weld, "triangulate": options.triangulate,
             "orient": options.orient,
         }),
     };
     let map_path = options.output.as_deref().filter(|_| kind == Some(Kind::Certificate));
     let claim = proof::write_and_check(session, map_path, outputs, |mut out| {
-        write_bundle(&made.tangent.bundle, &provenance, &mut out)
+        write_bundle(&made.tangent.bundle, made.field.as_ref().map(|field| &field.section), &provenance, &mut out)
     })?;
     if let (Some(path), Some(kind)) = (&options.output, kind) {
         files::stage(session, path, kind, &made, &mesh.file.positions, outputs)?;

@@ -143,6 +143,11 @@ impl<'b> Section<'b> {
         Self { bundle, levels, turns }
     }
 
+    /// The bundle that it is a section of.
+    pub fn bundle(&self) -> &'b CircleBundle {
+        self.bundle
+    }
+
     /// The levels, one for each vertex of the surface that is not singular.
     pub fn levels(&self) -> &[Option<u32>] {
         &self.levels
