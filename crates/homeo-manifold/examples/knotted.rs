@@ -63,8 +63,10 @@ fn print_row(name: &str, paths: &[Vec<Place>]) -> Result<(), Box<dyn Error>> {
     let (volume, tried, canonical) = match find_by_retriangulating(small, 1, 300, || true) {
         Ok(found) => {
             let canonical = find_canonical(&found.triangulation, &found.structure, 1000, || true);
-            let name = canonical
-                .map_or_else(|reason| reason.to_string(), |canonical| format!("`{}`", signature(&canonical.triangulation)));
+            let name = canonical.map_or_else(
+                |reason| reason.to_string(),
+                |canonical| format!("`{}`", signature(&canonical.triangulation)),
+            );
             (format!("{:.10}", found.structure.volume().middle()), found.tried, name)
         }
         Err(refusal) => (refusal.to_string(), 0, String::new()),

@@ -62,6 +62,26 @@ pub enum SectionError {
     Opposite { first: u32, second: u32 },
     #[error("the triangles at vertex {vertex} have no angles: move it, or its neighbours, apart")]
     Flat { vertex: u32 },
+    #[error("there are {given} vectors for the {count} triangles of the surface: give one for each")]
+    TriangleCount { given: usize, count: usize },
+    #[error(
+        "triangle {triangle} has no area: a vector for it has no direction; collapse it, or give vectors at vertices"
+    )]
+    FlatTriangle { triangle: u32 },
+    #[error(
+        "the vector of triangle {triangle} is zero, normal to it, or not finite: give it a direction, as indices of such a field \
+         belong to vertices"
+    )]
+    NoVector { triangle: u32 },
+    #[error(
+        "the vectors of the neighbouring triangles {first} and {second}, laid flat, are opposite, so that the field may turn \
+         either way between them: change one of them"
+    )]
+    OppositeTriangles { first: u32, second: u32 },
+    #[error(
+        "triangle {triangle} is none of the surface of middles: make the bundle over the triangles of that surface"
+    )]
+    NotMiddles { triangle: u32 },
     #[error("the surface has a boundary, or is not connected, at triangle {triangle}")]
     NotClosed { triangle: u32 },
 }
@@ -282,6 +302,8 @@ pub(super) fn closed_walls(bundle: &CircleBundle) -> Result<Walls, SectionError>
 mod check;
 #[cfg(test)]
 mod field_tests;
+#[cfg(test)]
+mod middles_tests;
 #[cfg(test)]
 mod tests;
 

@@ -187,7 +187,9 @@ mod tests {
         let (mut with, mut without) = (0, 0);
         for entry in testing::census() {
             let faces: Vec<_> = entry.triangulation.faces().collect();
-            for triangulation in [vec![entry.triangulation.clone()], flips(&entry.triangulation, &faces).unwrap()].concat() {
+            for triangulation in
+                [vec![entry.triangulation.clone()], flips(&entry.triangulation, &faces).unwrap()].concat()
+            {
                 let skeleton = Skeleton::new(&triangulation);
                 match (Structure::find(&triangulation, &skeleton), Obstruction::search(&skeleton)) {
                     (Ok(_), Some(found)) => panic!("{}: {:?}", entry.name, found.weights()),
