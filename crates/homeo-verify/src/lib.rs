@@ -12,7 +12,7 @@
 //! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3 and K3;
 //! 7. `complex_barycentric` (K1-K3, of `docs/theory/complex.md`), `mean_value/speeds`: what speeds add;
 //! 8. `hyperbolic` (Y1-Y8, of `docs/theory/hyperbolic.md`);
-//! 9. `bundle` (T1-T8, of `docs/theory/bundles.md`).
+//! 9. `bundle` (T1-T10, of `docs/theory/bundles.md`).
 //!
 //! # Complexity
 //! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file. For

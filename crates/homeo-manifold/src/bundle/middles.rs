@@ -3,7 +3,7 @@
 //! Each triangle gets a vertex in its middle, and each edge is turned to join the two middles beside it, straight across the
 //! two triangles laid flat. So nothing changes but the triangulation; vectors are at middles, the vertices of the source have
 //! none, and the index of each is the turning of the vectors along the polygon of the triangles round it, more by 2π less its angles.
-//! Theorem 8 of `docs/theory/bundles.md` holds as it stands; the index is that of Crane, Desbrun and Schröder 2010.
+//! Theorem 7 of `docs/theory/bundles.md` holds as it stands; the index is that of Crane, Desbrun and Schröder 2010.
 
 use super::field::Field;
 use super::identification::Identification;

@@ -9,7 +9,7 @@
 //! closed surface: *the indices add up to the Euler number*, whatever the section (Poincaré and Hopf). The index of a vertex
 //! without a level is that of the polygon of the triangles round it.
 //!
-//! Sections are not in Yin 2010. Proofs: `docs/theory/bundles.md`, theorems 3, 8 and 9; transport along edges is that of Crane,
+//! Sections are not in Yin 2010. Proofs: `docs/theory/bundles.md`, theorems 3, 7 and 8; transport along edges is that of Crane,
 //! Desbrun and Schröder 2010.
 
 use super::circle::CircleBundle;

@@ -49,7 +49,7 @@ impl SectionData {
     fn statement(&self) -> String {
         let singular = |indices: &[i64]| indices.iter().filter(|&&index| index != 0).count();
         format!(
-            " The paths in the file are a section of it over the {} edges between vertices with a level; the section goes on over \
+            " The paths in the file give a section of it over the {} edges between vertices with a level; the section goes on over \
              the surface but for {} triangles and {} vertices, where it turns as often as their indices say; these add up to the \
              Euler characteristic.",
             self.path_lengths.len(),

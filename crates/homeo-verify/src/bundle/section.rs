@@ -2,7 +2,7 @@
 //!
 //! *Theorem.* Tetrahedra over a triangle follow one another round a solid torus, each without one vertex of the last and with a
 //! new one. Counted in the order in which they come, vertices are joined if their numbers differ by at most three, and a closed
-//! path turns about the torus as often as its differences add up to `3 N`. (Proof: `docs/theory/bundles.md`, theorem 2.)
+//! path turns about the torus as often as its differences add up to `3 N`. (Proof: `docs/theory/bundles.md`, theorems 2 and 10.)
 
 use super::data::{BundleData, SectionData};
 use crate::complex::Complex;
