@@ -61,8 +61,8 @@ pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Re
         source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
-            "layers": options.layers, "field": options.field.as_deref().map(|name| file_name(Path::new(name))), "weld": options.weld, "triangulate": options.triangulate,
-            "orient": options.orient,
+            "layers": options.layers, "field": options.field.as_deref().map(|name| file_name(Path::new(name))),
+            "weld": options.weld, "triangulate": options.triangulate, "orient": options.orient,
         }),
     };
     let map_path = options.output.as_deref().filter(|_| kind == Some(Kind::Certificate));
