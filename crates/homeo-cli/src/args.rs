@@ -435,7 +435,8 @@ pub struct BundleArgs {
     /// Tetrahedra as .json, a certificate as .homeo, or a mesh format for volumes (.mesh, .msh, .vtk, .vtu)
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// A field of vectors to be made a section: the name of one at the vertices of MESH, or a file .csv or .npy of them
+    /// A field of vectors to be made a section: the name of one at the vertices or triangles of MESH, or a file .csv or
+    /// .npy with one for each
     #[arg(long, value_name = "FIELD")]
     pub field: Option<String>,
     /// The surface with the indices of the field at its triangles and vertices (.ply, .vtk, .vtu)

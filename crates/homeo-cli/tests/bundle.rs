@@ -158,6 +158,43 @@ fn fields_become_sections() {
     assert!(met.chunks(5).all(|fibre| fibre.iter().sum::<i64>() == 1));
 }
 
+/// The section is in the map file, and the checker finds it there.
+#[test]
+fn map_files_hold_the_section() {
+    let folder = Folder::new();
+    folder.write("m.obj", torus(9, 7)).write("f.csv", format!("x,y,z\n{}", "1,0.31,0.17\n".repeat(63)));
+    let report = folder.line("bundle m.obj --layers 5 --field f.csv -o b.homeo --json -q").expect(0).json();
+    let verified = folder.line("verify b.homeo --json -q").expect(0).json();
+    assert_eq!(verified["certificate"], report["certificate"]);
+    assert_eq!(verified["certificate"]["target"], "unit-tangent-bundle-with-section");
+    let (checked, paths) = (&verified["certificate"]["checked"], &report["field"]["checked"]["paths"]);
+    assert_eq!(&checked["paths over edges between them (rule T9)"], paths, "{checked}");
+    assert!(paths.as_u64().unwrap() >= 189);
+}
+
+/// A vector for each triangle: indices are at vertices, and the field that `--indices` writes is read again.
+#[test]
+fn vectors_on_triangles_become_sections() {
+    let folder = Folder::new();
+    folder.write("m.obj", torus(9, 7)).write("f.csv", format!("x,y,z\n{}", "1,0.31,0.17\n".repeat(126)));
+    let options = "--layers 5 --field f.csv --indices i.vtu --report p.html --json -q";
+    let report = folder.line(&format!("bundle m.obj -o b.homeo {options}")).expect(0).json();
+    let field = &report["field"];
+    assert_eq!((&field["vectors"], &field["sum"]), (&"triangles".into(), &0.into()));
+    assert_eq!(field["singular_triangles"].as_array().unwrap().len(), 0);
+    let singular = field["singular_vertices"].as_array().unwrap();
+    assert!(singular.len() >= 4 && singular.iter().all(|one| one["vertex"].as_u64().unwrap() < 63), "{field}");
+    let base = &report["bundle"]["base"];
+    assert_eq!((&base["middles"], &base["triangles"]), (&126.into(), &378.into()));
+    let verified = folder.line("verify b.homeo --json -q").expect(0).json();
+    assert_eq!(verified["certificate"]["target"], "unit-tangent-bundle-with-section");
+    assert!(folder.text("p.html").contains("sum of its indices"));
+    let again = folder.line("bundle i.vtu --layers 4 --field field -o b.json --json -q").expect(0).json();
+    assert_eq!(again["field"]["singular_vertices"], field["singular_vertices"]);
+    let json: Value = serde_json::from_str(&folder.text("b.json")).unwrap();
+    assert_eq!((json["middles"].as_u64(), json["vertices"].as_u64()), (Some(126), Some(4 * 189)));
+}
+
 #[test]
 fn fields_that_do_not_fit_are_refused() {
     let folder = Folder::new();
@@ -166,10 +203,13 @@ fn fields_that_do_not_fit_are_refused() {
         .write("short.csv", "x,y,z\n1,2,3\n")
         .write("zero.csv", format!("x,y,z\n{}", "0,0,0\n".repeat(20)))
         .write("flat.csv", format!("x,y\n{}", "1,0.3\n".repeat(20)));
+    let triangles = "1,0.3,0.2\n".repeat(39);
+    folder.write("still.csv", format!("x,y,z\n{triangles}0,0,0\n"));
     let cases = [
-        ("short.csv", "20 vertices"),
+        ("short.csv", "20 vertices and 40 triangles"),
         ("flat.csv", "2 columns"),
         ("zero.csv", "neighbours"),
+        ("still.csv", "triangle 39"),
         ("wind", "no field of the name"),
     ];
     for (name, word) in cases {

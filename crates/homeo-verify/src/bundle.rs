@@ -1,4 +1,5 @@
-//! Rules T1-T8: a closed tetrahedral mesh is the unit tangent bundle of a closed surface, as a bundle of circles.
+//! Rules T1-T8: a closed tetrahedral mesh is the unit tangent bundle of a closed surface, as a bundle of circles; T9 and T10: a
+//! section of it over the edges of the surface, with its indices.
 //!
 //! *Theorem.* Over a closed oriented triangulated surface let the slopes be antisymmetric, and add up to -1 or -2 round each
 //! triangle. Then the tetrahedra that belong to them are a circle bundle, and its Euler number is the number of sums -1 less that
@@ -6,6 +7,7 @@
 //! vectors. (Proof: `docs/theory/bundles.md`.)
 
 mod data;
+mod section;
 
 use crate::complex::Complex;
 use crate::links::{Shape, check_manifold};
@@ -26,7 +28,7 @@ pub(crate) fn check_bundle(data: &BundleData) -> Checked<Vec<(&'static str, u64)
     let total = Complex::new(4, data.tetrahedra.as_flattened().to_vec(), vertices as usize, ["T6", "T6"])?;
     check_total(&total)?;
     check_fibres(data, vertices as usize)?;
-    Ok(vec![
+    let mut checked = vec![
         ("base vertices with cyclic links (rules T1, T2)", data.vertex_count as u64),
         ("base triangles, oriented and connected (rules T1, T2)", triangles as u64),
         ("walls with slopes that agree (rule T3)", 3 * triangles as u64 / 2),
@@ -35,7 +37,11 @@ pub(crate) fn check_bundle(data: &BundleData) -> Checked<Vec<(&'static str, u64)
         ("faces with two tetrahedra on opposite sides (rule T6)", 2 * data.tetrahedra.len() as u64),
         ("vertices with spheres as links (rule T7)", vertices),
         ("closed fibres, disjoint, of edges of the mesh (rule T8)", data.vertex_count as u64),
-    ])
+    ];
+    if let Some(stored) = &data.section {
+        checked.extend(section::check_section(data, stored, &base, characteristic)?);
+    }
+    Ok(checked)
 }
 
 /// Rule T2: the base is a closed, connected, oriented surface; its Euler characteristic.
@@ -212,6 +218,7 @@ mod tests {
             layers: 5,
             slopes: vec![],
             tetrahedra,
+            section: None,
         };
         assert_eq!(rule(check_fibres(&data(SPHERE.to_vec()), 5)), None);
         // Nothing joins 3 with 4.

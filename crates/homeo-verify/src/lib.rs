@@ -12,7 +12,7 @@
 //! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3 and K3;
 //! 7. `complex_barycentric` (K1-K3, of `docs/theory/complex.md`), `mean_value/speeds`: what speeds add;
 //! 8. `hyperbolic` (Y1-Y8, of `docs/theory/hyperbolic.md`);
-//! 9. `bundle` (T1-T8, of `docs/theory/bundles.md`).
+//! 9. `bundle` (T1-T10, of `docs/theory/bundles.md`).
 //!
 //! # Complexity
 //! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file. For
@@ -177,6 +177,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
     let is_immersed = map.manifest.target == Target::ImmersedShell;
     let is_embedded = map.manifest.target == Target::EmbeddedShell;
     let is_canonical = map.manifest.target == Target::CanonicalDecomposition;
+    let has_section = map.manifest.target == Target::UnitTangentBundleWithSection;
     let (kind, theorem) = match map.manifest.kind {
         Kind::Foliation => ("foliation", "theorem on locally bipolar foliations, rules 1-8"),
         Kind::PiecewiseLinear => ("piecewise-linear", "degree theorem for piecewise-linear maps, rules 8 and P"),
@@ -190,6 +191,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
             ("hyperbolic", "theorems on glued truncated tetrahedra and tilts, rules Y1-Y8")
         }
         Kind::Hyperbolic => ("hyperbolic", "theorem on glued truncated tetrahedra, rules Y1-Y7"),
+        Kind::UnitTangentBundle if has_section => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T10"),
         Kind::UnitTangentBundle => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T8"),
     };
     let (target, onto) = match map.manifest.target {
@@ -207,6 +209,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::GeodesicBoundary => ("geodesic-boundary", "manifold"),
         Target::CanonicalDecomposition => ("canonical-decomposition", "manifold"),
         Target::UnitTangentBundle => ("unit-tangent-bundle", "surface"),
+        Target::UnitTangentBundleWithSection => ("unit-tangent-bundle-with-section", "surface"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
     let mut statement = format!(
@@ -268,13 +271,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         overlaps = "By Mostow and Prasad it is the only such structure of the manifold; the checker relies on this theorem for it.";
     }
     if let MapData::Bundle(data) = &map.data {
-        let (tetrahedra, triangles) = (data.tetrahedra.len(), data.triangles.len());
-        statement = format!(
-            "The mesh of {tetrahedra} tetrahedra is a closed oriented 3-manifold, and a bundle of circles of {} edges over the \
-             surface of {triangles} triangles in the file. Its Euler number is the Euler characteristic of the surface, so it \
-             is isomorphic to the bundle of unit tangent vectors ({theorem}).",
-            data.layers
-        );
+        statement = data.statement(theorem);
         overlaps = "That oriented circle bundles are classified by their Euler number is a theorem that the checker relies on.";
     }
     let limits = [

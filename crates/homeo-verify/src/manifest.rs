@@ -39,6 +39,9 @@ pub(crate) enum Target {
     /// The unit tangent bundle of a surface.
     #[serde(rename = "unit-tangent-bundle")]
     UnitTangentBundle,
+    /// The same, with a section of it over the edges of the surface.
+    #[serde(rename = "unit-tangent-bundle-with-section")]
+    UnitTangentBundleWithSection,
 }
 
 impl Target {
@@ -57,9 +60,14 @@ impl Target {
         matches!(self, Target::GeodesicBoundary | Target::CanonicalDecomposition)
     }
 
+    /// Whether unit tangent bundles reach it, and no maps.
+    pub(crate) fn is_bundle(self) -> bool {
+        matches!(self, Target::UnitTangentBundle | Target::UnitTangentBundleWithSection)
+    }
+
     /// Vertices of a cell: three or four.
     pub(crate) fn cell_size(self) -> usize {
-        let is_solid = matches!(self, Target::Cube | Target::Ball | Target::UnitTangentBundle) || self.is_geodesic();
+        let is_solid = matches!(self, Target::Cube | Target::Ball) || self.is_geodesic() || self.is_bundle();
         if is_solid { 4 } else { 3 }
     }
 }
@@ -151,8 +159,8 @@ impl Manifest {
         let is_geodesic = manifest.target.is_geodesic();
         readable(is_hyperbolic == is_geodesic, "kind hyperbolic and the targets of such structures belong together")?;
         let is_bundle = manifest.kind == Kind::UnitTangentBundle;
-        let has_bundle = manifest.target == Target::UnitTangentBundle;
-        readable(is_bundle == has_bundle, "kind and target unit-tangent-bundle belong together")?;
+        let has_bundle = manifest.target.is_bundle();
+        readable(is_bundle == has_bundle, "kind unit-tangent-bundle and the targets of bundles belong together")?;
         Ok(manifest)
     }
 }

@@ -31,7 +31,8 @@ pub struct Claim {
     /// `hyperbolic` or `unit-tangent-bundle`.
     pub kind: String,
     /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon`,
-    /// `annulus`, `domain`, `geodesic-boundary`, `canonical-decomposition` or `unit-tangent-bundle`.
+    /// `annulus`, `domain`, `geodesic-boundary`, `canonical-decomposition`, `unit-tangent-bundle` or
+    /// `unit-tangent-bundle-with-section`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]

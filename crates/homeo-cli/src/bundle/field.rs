@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use homeo::certificate::StoredSection;
 use homeo::progress::Progress;
 use homeo_core::io::{Attribute, Element, MeshFile, Values};
-use homeo_manifold::bundle::{Section, SectionError, TangentBundle, WoundPaths};
+use homeo_manifold::bundle::{MiddleSurface, Section, SectionError, TangentBundle, WoundPaths};
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, Result};
@@ -15,37 +16,46 @@ use crate::text::{Lines, counted};
 /// Singular elements that people see.
 const MOST_SHOWN: usize = 8;
 
+/// A field of vectors as it was given.
+pub enum Vectors {
+    AtVertices(Vec<[f64; 3]>),
+    OnTriangles(Vec<[f64; 3]>),
+}
+
 /// The section of a field and its indices on the surface that was read.
 pub struct FieldSection {
     pub name: String,
-    pub vectors: Vec<[f64; 3]>,
-    /// The level over each vertex of the base, but for singular ones.
-    pub levels: Vec<Option<u32>>,
-    /// A path over each edge of the base whose ends have levels.
-    pub paths: Vec<Vec<u32>>,
-    /// The index of each triangle of the base.
-    pub base_indices: Vec<i64>,
+    pub vectors: Vectors,
+    /// As the certificate has it.
+    pub section: StoredSection,
     /// Triangles of the surface with an index other than 0.
     pub triangles: Vec<(u32, i64)>,
-    /// Vertices where the field is zero, and their indices.
+    /// Vertices where the field is zero, and their indices; for vectors on triangles those with an index other than 0.
     pub vertices: Vec<(u32, i64)>,
 }
 
-/// The vectors that an option names: a file, or a field that the mesh carries.
+/// The vectors that an option names: a file, or a field that the mesh carries; `triangles` is how many there are.
 ///
 /// # Errors
 /// A file that cannot be read; no such field, and which there are; another number of vectors.
-pub fn vectors(name: &str, mesh: &MeshFile) -> Result<Vec<[f64; 3]>> {
+pub fn vectors(name: &str, mesh: &MeshFile, triangles: usize) -> Result<Vectors> {
     let extension = Path::new(name).extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    let rows = match extension.as_deref() {
-        Some("csv" | "npy") => from_file(Path::new(name))?,
-        _ => carried(name, mesh)?,
+    let (rows, element) = match extension.as_deref() {
+        Some("csv" | "npy") => (from_file(Path::new(name))?, None),
+        _ => carried(name, mesh).map(|(rows, element)| (rows, Some(element)))?,
     };
-    let count = mesh.vertex_count;
-    if rows.len() == count {
-        return Ok(rows);
+    let vertices = mesh.vertex_count;
+    if rows.len() == vertices && element != Some(Element::Polygon) {
+        return Ok(Vectors::AtVertices(rows));
     }
-    let message = format!("{name} has {} vectors for {count} vertices: give one for each vertex", rows.len());
+    if rows.len() == triangles && element != Some(Element::Vertex) {
+        return Ok(Vectors::OnTriangles(rows));
+    }
+    let message = format!(
+        "{name} has {} vectors for {vertices} vertices and {triangles} triangles: give one for each vertex, or one for each \
+         triangle",
+        rows.len()
+    );
     Err(Failure::input("unfit-field", message))
 }
 
@@ -58,30 +68,43 @@ fn from_file(path: &Path) -> Result<Vec<[f64; 3]>> {
     Err(Failure::input("unfit-field", message))
 }
 
-fn carried(name: &str, mesh: &MeshFile) -> Result<Vec<[f64; 3]>> {
-    if let Some(attribute) = mesh.attribute(name, Element::Vertex)
-        && attribute.components == 3
-        && let Some(numbers) = numbers(&attribute.values)
-    {
-        return Ok(numbers.chunks_exact(3).map(|row| [row[0], row[1], row[2]]).collect());
+/// The field of this name, at vertices if there are two.
+fn carried(name: &str, mesh: &MeshFile) -> Result<(Vec<[f64; 3]>, Element)> {
+    const ELEMENTS: [Element; 2] = [Element::Vertex, Element::Polygon];
+    for element in ELEMENTS {
+        if let Some(attribute) = mesh.attribute(name, element)
+            && attribute.components == 3
+            && let Some(numbers) = numbers(&attribute.values)
+        {
+            return Ok((numbers.chunks_exact(3).map(|row| [row[0], row[1], row[2]]).collect(), element));
+        }
     }
     let is_field = |attribute: &&Attribute| {
-        attribute.components == 3 && attribute.element == Element::Vertex && numbers(&attribute.values).is_some()
+        attribute.components == 3 && ELEMENTS.contains(&attribute.element) && numbers(&attribute.values).is_some()
     };
     let names: Vec<&str> = mesh.attributes.iter().filter(is_field).map(|attribute| attribute.name.as_str()).collect();
     let there = match names.as_slice() {
-        [] => "it carries none at its vertices; give a file .csv or .npy".to_owned(),
-        names => format!("its fields of vectors at vertices are {}", names.join(", ")),
+        [] => "it carries none at its vertices or triangles; give a file .csv or .npy".to_owned(),
+        names => format!("its fields of vectors are {}", names.join(", ")),
     };
     let message = match mesh.attributes.iter().find(|attribute| attribute.name == name) {
         Some(other) => format!(
-            "{name} has {} at the {} of the mesh: a section needs 3 at its vertices; {there}",
+            "{name} has {} at the {} of the mesh: a section needs 3 at its vertices or triangles; {there}",
             counted(other.components, "number", "numbers"),
             other.element.plural()
         ),
         None => format!("the mesh has no field of the name {name}; {there}"),
     };
     Err(Failure::input("unfit-field", message))
+}
+
+/// The surface of middles, where vectors are on triangles.
+///
+/// # Errors
+/// A surface that is not closed.
+pub fn middles(vectors: Option<&Vectors>, triangles: &[[u32; 3]], count: usize) -> Result<Option<MiddleSurface>> {
+    let is_needed = matches!(vectors, Some(Vectors::OnTriangles(_)));
+    is_needed.then(|| MiddleSurface::new(triangles, count).map_err(unfit)).transpose()
 }
 
 fn numbers(values: &Values) -> Option<Vec<f64>> {
@@ -101,30 +124,43 @@ impl FieldSection {
     /// does not hold.
     pub fn new(
         session: &Session,
-        (name, vectors): (&str, Vec<[f64; 3]>),
-        tangent: &TangentBundle,
+        (name, vectors): (&str, Vectors),
+        (tangent, middles): (&TangentBundle, Option<&MiddleSurface>),
         tetrahedra: &[[u32; 4]],
         positions: &[[f64; 3]],
     ) -> Result<Self> {
         session.stage("field");
-        let section = Section::of_field(tangent, positions, &vectors).map_err(unfit)?;
-        let base = tangent.bundle.triangles();
-        let base_indices: Vec<i64> = (0..base.len() as u32).map(|triangle| section.index(triangle)).collect();
-        let (paths, vertices) = (section.paths(), section.singular_vertices());
+        let section = match (&vectors, middles) {
+            (Vectors::OnTriangles(rows), Some(middles)) => middles.section(tangent, positions, rows),
+            (Vectors::OnTriangles(rows) | Vectors::AtVertices(rows), _) => Section::of_field(tangent, positions, rows),
+        };
+        let section = section.map_err(unfit)?;
+        let stored = StoredSection::new(&section);
         session.stage("section");
-        let wound = WoundPaths::new(base, tangent.bundle.layers(), tetrahedra, &paths)
+        let wound = WoundPaths::new(tangent.bundle.triangles(), tangent.bundle.layers(), tetrahedra, &stored.paths)
             .map_err(|fault| Failure::bug(format!("the paths are not those of a section: {fault}")))?;
-        if wound.triangles != base_indices || wound.vertices != vertices {
+        if wound.triangles != stored.triangle_indices || wound.vertices != section.singular_vertices() {
             return Err(Failure::bug("the paths of the section do not wind as its indices say"));
         }
         session.check()?;
-        let mut sums = std::collections::BTreeMap::new();
-        for (&parent, &index) in tangent.parents.iter().zip(&base_indices).filter(|(_, index)| **index != 0) {
-            *sums.entry(parent).or_insert(0) += index;
+        let (triangles, vertices) = match middles {
+            Some(middles) => (Vec::new(), sparse(middles.indices(tangent, &section))),
+            None => (by_parents(tangent, &stored), section.singular_vertices()),
+        };
+        Ok(Self { name: name.to_owned(), vectors, section: stored, triangles, vertices })
+    }
+
+    fn is_on_triangles(&self) -> bool {
+        matches!(self.vectors, Vectors::OnTriangles(_))
+    }
+
+    /// The vectors at the vertices of the surface below the bundle, but for added ones; for vectors on triangles they are at
+    /// its middles, which come after the vertices that were read.
+    pub fn at_vertices(&self, read: usize) -> Vec<[f64; 3]> {
+        match &self.vectors {
+            Vectors::AtVertices(rows) => rows.clone(),
+            Vectors::OnTriangles(rows) => std::iter::repeat_n([0.0; 3], read).chain(rows.iter().copied()).collect(),
         }
-        let triangles = sums.into_iter().filter(|&(_, index)| index != 0).collect();
-        let levels = section.levels().to_vec();
-        Ok(Self { name: name.to_owned(), vectors, levels, paths, base_indices, triangles, vertices })
     }
 
     /// Of all indices.
@@ -143,8 +179,9 @@ impl FieldSection {
             "singular_vertices": list("vertex", &self.vertices),
             "sum": self.sum(),
             "euler_characteristic": euler_characteristic,
-            "longest_path": self.paths.iter().map(|path| path.len() - 1).max(),
-            "checked": {"fibres": self.levels.iter().flatten().count(), "paths": self.paths.len()},
+            "vectors": if self.is_on_triangles() { "triangles" } else { "vertices" },
+            "longest_path": self.section.paths.iter().map(|path| path.len() - 1).max(),
+            "checked": {"fibres": self.section.levels.iter().flatten().count(), "paths": self.section.paths.len()},
         })
     }
 
@@ -163,7 +200,10 @@ impl FieldSection {
         }
         lines.add(
             "section",
-            format!("{} over edges, checked by the tetrahedra alone", counted(self.paths.len(), "path", "paths")),
+            format!(
+                "{} over edges, checked by the tetrahedra alone",
+                counted(self.section.paths.len(), "path", "paths")
+            ),
         );
     }
 
@@ -177,19 +217,41 @@ impl FieldSection {
         };
         let attribute =
             |name: &str, element, components, values| Attribute { name: name.to_owned(), element, components, values };
+        let field =
+            |element, rows: &[[f64; 3]]| attribute("field", element, 3, Values::F64(rows.as_flattened().to_vec()));
         mesh.attributes = vec![
             attribute("index", Element::Vertex, 1, dense(positions.len(), &self.vertices)),
-            attribute("field", Element::Vertex, 3, Values::F64(self.vectors.as_flattened().to_vec())),
+            match &self.vectors {
+                Vectors::AtVertices(rows) => field(Element::Vertex, rows),
+                Vectors::OnTriangles(rows) => field(Element::Polygon, rows),
+            },
             attribute("index", Element::Polygon, 1, dense(triangles.len(), &self.triangles)),
         ];
         mesh
     }
 }
 
-fn unfit(error: SectionError) -> Failure {
+/// The indices of the triangles of a surface, added up over what they were cut into.
+fn by_parents(tangent: &TangentBundle, section: &StoredSection) -> Vec<(u32, i64)> {
+    let mut sums = std::collections::BTreeMap::new();
+    for (&parent, &index) in tangent.parents.iter().zip(&section.triangle_indices).filter(|(_, index)| **index != 0) {
+        *sums.entry(parent).or_insert(0) += index;
+    }
+    sums.into_iter().filter(|&(_, index)| index != 0).collect()
+}
+
+fn sparse(indices: Vec<i64>) -> Vec<(u32, i64)> {
+    (0..).zip(indices).filter(|&(_, index)| index != 0).collect()
+}
+
+/// The refusal, with its elements.
+pub fn unfit(error: SectionError) -> Failure {
     let elements = match error {
-        SectionError::Zeros { first, second } | SectionError::Opposite { first, second } => json!([first, second]),
+        SectionError::Zeros { first, second }
+        | SectionError::Opposite { first, second }
+        | SectionError::OppositeTriangles { first, second } => json!([first, second]),
         SectionError::NoDirection { vertex } | SectionError::Flat { vertex } => json!([vertex]),
+        SectionError::NoVector { triangle } | SectionError::FlatTriangle { triangle } => json!([triangle]),
         _ => json!([]),
     };
     Failure::input("unfit-field", error.to_string()).with("elements", elements)

@@ -122,7 +122,7 @@ fn write_tetrahedra(made: &Made, out: &mut BufWriter<std::fs::File>) -> std::io:
     let bundle = &made.tangent.bundle;
     let described = json!({
         "vertices": made.vertex_count(), "layers": bundle.layers(), "fibre": "vertex v * layers + level",
-        "euler_number": made.euler_number, "cuts": made.tangent.cuts, "added": added(&made.tangent),
+        "euler_number": made.euler_number, "cuts": made.tangent.cuts, "middles": made.middles, "added": added(&made.tangent),
     });
     let text = described.to_string();
     // All of it but the closing brace.
@@ -139,12 +139,12 @@ fn write_tetrahedra(made: &Made, out: &mut BufWriter<std::fs::File>) -> std::io:
 
 /// The levels of a section, null where there is none, its paths over edges, and its indices on the surface that was read.
 fn write_section(field: &FieldSection, out: &mut BufWriter<std::fs::File>) -> std::io::Result<()> {
-    let levels = field.levels.iter().map(|level| level.map_or(Value::Null, Value::from)).collect::<Value>();
+    let levels = field.section.levels.iter().map(|level| level.map_or(Value::Null, Value::from)).collect::<Value>();
     let pairs =
         |list: &[(u32, i64)]| json!(list.iter().map(|&(element, index)| json!([element, index])).collect::<Vec<_>>());
     write!(out, ",\n\"section\": {{\"levels\": {levels}, \"singular_triangles\": {}, ", pairs(&field.triangles))?;
     write!(out, "\"singular_vertices\": {}, \"paths\": [", pairs(&field.vertices))?;
-    for (number, path) in field.paths.iter().enumerate() {
+    for (number, path) in field.section.paths.iter().enumerate() {
         write!(out, "{}\n{path:?}", if number == 0 { "" } else { "," })?;
     }
     write!(out, "]}}")
@@ -188,10 +188,11 @@ fn mesh(made: &Made, positions: &[[f64; 3]]) -> MeshFile {
     };
     mesh.attributes = vec![attribute("base", &|vertex| vertex / layers), attribute("level", &|vertex| vertex % layers)];
     if let Some(field) = &made.field {
-        let is_met = |vertex: usize| field.levels[vertex / layers] == Some((vertex % layers) as u32);
+        let is_met = |vertex: usize| field.section.levels[vertex / layers] == Some((vertex % layers) as u32);
         mesh.attributes.push(attribute("section", &|vertex| usize::from(is_met(vertex))));
         // Three tetrahedra for each level stand over a triangle.
-        let indices = field.base_indices.iter().flat_map(|&index| std::iter::repeat_n(index, 3 * layers)).collect();
+        let indices =
+            field.section.triangle_indices.iter().flat_map(|&index| std::iter::repeat_n(index, 3 * layers)).collect();
         let (name, values) = ("index".to_owned(), Values::I64(indices));
         mesh.attributes.push(Attribute { name, element: Element::Tetrahedron, components: 1, values });
     }

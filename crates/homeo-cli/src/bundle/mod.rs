@@ -5,12 +5,13 @@ mod files;
 mod page;
 mod refuse;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use homeo::certificate::{Provenance, write_bundle};
 use homeo::progress::Progress;
 use homeo_core::mesh::TetrahedronComplex;
-use homeo_manifold::bundle::{BundleError, TangentBundle};
+use homeo_manifold::bundle::{BundleError, MiddleSurface, TangentBundle};
 use homeo_manifold::{Homology, Triangulation};
 use homeo_verify::Claim;
 use serde_json::{Value, json};
@@ -42,38 +43,43 @@ pub fn run(session: &Session, options: &BundleArgs, outputs: &mut Outputs) -> Re
     session.stage("check");
     let complex = refuse::unfit(session, &mesh, options.triangulate)?;
     session.check()?;
-    let vectors = options.field.as_deref().map(|name| field::vectors(name, &mesh.file)).transpose()?;
-    session.stage("bundle");
-    unless_too_large(complex.cell_count(), complex.vertex_count(), options.layers)?;
     let corners: Vec<[u32; 3]> = complex.cells().iter().map(|cell| cell.map(|v| v.raw())).collect();
-    let tangent = TangentBundle::new(&corners, complex.vertex_count(), options.layers).map_err(explain)?;
+    let read = |name| field::vectors(name, &mesh.file, corners.len());
+    let vectors = options.field.as_deref().map(read).transpose()?;
+    session.stage("bundle");
+    let middles = field::middles(vectors.as_ref(), &corners, complex.vertex_count())?;
+    let below = Below::new(middles.as_ref(), &corners, &mesh.file.positions)?;
+    unless_too_large(below.triangles.len(), below.positions.len(), options.layers)?;
+    let tangent = TangentBundle::new(&below.triangles, below.positions.len(), options.layers).map_err(explain)?;
     session.check()?;
     session.stage("homology");
     let mut made = Made::new(tangent)?;
     session.check()?;
     if let Some(field) = options.field.as_deref().zip(vectors) {
-        made.field = Some(FieldSection::new(session, field, &made.tangent, &made.tetrahedra, &mesh.file.positions)?);
+        let over = (&made.tangent, middles.as_ref());
+        made.field = Some(FieldSection::new(session, field, over, &made.tetrahedra, &mesh.file.positions)?);
+        made.middles = below.positions.len() - mesh.file.positions.len();
     }
     let provenance = Provenance {
         source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
         options: json!({
-            "layers": options.layers, "weld": options.weld, "triangulate": options.triangulate,
-            "orient": options.orient,
+            "layers": options.layers, "field": options.field.as_deref().map(|name| file_name(Path::new(name))),
+            "weld": options.weld, "triangulate": options.triangulate, "orient": options.orient,
         }),
     };
     let map_path = options.output.as_deref().filter(|_| kind == Some(Kind::Certificate));
     let claim = proof::write_and_check(session, map_path, outputs, |mut out| {
-        write_bundle(&made.tangent.bundle, &provenance, &mut out)
+        write_bundle(&made.tangent.bundle, made.field.as_ref().map(|field| &field.section), &provenance, &mut out)
     })?;
     if let (Some(path), Some(kind)) = (&options.output, kind) {
-        files::stage(session, path, kind, &made, &mesh.file.positions, outputs)?;
+        files::stage(session, path, kind, &made, &below.positions, outputs)?;
     }
     if let (Some(path), Some(format), Some(field)) = (&options.indices, format, &made.field) {
         files::stage_surface(session, path, format, &field.surface(&mesh.file.positions, &corners), outputs)?;
     }
     if let Some(path) = &options.report {
-        page::stage(session, path, &options.input, (&made, &mesh.file.positions, &corners), &claim, outputs)?;
+        page::stage(session, path, &options.input, (&made, &below.positions, &below.triangles), &claim, outputs)?;
     }
     session.end_stage();
     let fields = json!({
@@ -99,6 +105,22 @@ fn shown(path: &Option<PathBuf>) -> Option<String> {
     path.as_ref().map(|path| path.display().to_string())
 }
 
+/// The surface of which the bundle is made: that which was read, or that of its middles.
+struct Below<'a> {
+    triangles: Cow<'a, [[u32; 3]]>,
+    positions: Cow<'a, [[f64; 3]]>,
+}
+
+impl<'a> Below<'a> {
+    fn new(middles: Option<&'a MiddleSurface>, triangles: &'a [[u32; 3]], positions: &'a [[f64; 3]]) -> Result<Self> {
+        let Some(middles) = middles else {
+            return Ok(Self { triangles: triangles.into(), positions: positions.into() });
+        };
+        let positions = middles.places(positions).map_err(field::unfit)?;
+        Ok(Self { triangles: middles.triangles().into(), positions: positions.into() })
+    }
+}
+
 /// A bundle and what is told of it.
 struct Made {
     tangent: TangentBundle,
@@ -107,6 +129,8 @@ struct Made {
     euler_number: i64,
     homology: Homology,
     field: Option<FieldSection>,
+    /// Vertices of the base that are middles of triangles.
+    middles: usize,
 }
 
 impl Made {
@@ -118,7 +142,7 @@ impl Made {
         let triangulation = Triangulation::from_complex(&complex).map_err(|error| bug(&error))?;
         let euler_number = tangent.bundle.euler_number().ok_or_else(|| bug(&"its base has a boundary"))?;
         let homology = Homology::new(&triangulation);
-        Ok(Self { tangent, tetrahedra, triangulation, euler_number, homology, field: None })
+        Ok(Self { tangent, tetrahedra, triangulation, euler_number, homology, field: None, middles: 0 })
     }
 
     fn vertex_count(&self) -> usize {
@@ -135,7 +159,7 @@ impl Made {
             "tetrahedra": self.tetrahedra.len(), "vertices": self.vertex_count(), "h1": self.homology.to_string(),
             "base": {
                 "vertices": self.tangent.bundle.vertex_count(), "triangles": self.tangent.bundle.triangles().len(),
-                "added": self.tangent.added.len(),
+                "added": self.tangent.added.len(), "middles": self.middles,
             },
         })
     }
@@ -172,9 +196,10 @@ fn words(session: &Session, options: &BundleArgs, made: &Made, claim: &Claim) ->
     lines.add("genus", made.genus());
     lines.add("Euler number", made.euler_number);
     lines.add("mesh", format!("{} vertices, {} tetrahedra", made.vertex_count(), made.tetrahedra.len()));
+    let middles = if made.middles > 0 { format!(" ({} middles of triangles)", made.middles) } else { String::new() };
     let added = match made.tangent.added.len() {
-        0 => String::new(),
-        added => format!(" ({added} added)"),
+        0 => middles,
+        added => format!("{middles} ({added} added)"),
     };
     lines.add("base", format!("{} vertices{added}, {} triangles", base.vertex_count(), base.triangles().len()));
     lines.add("fibres", format!("{} edges each", base.layers()));

@@ -36,11 +36,13 @@ pub fn stage(
         limits: claim.limits.clone(),
     };
     let seconds: Vec<(String, f64)> = session.seconds().into_iter().map(|(name, s)| (name.to_owned(), s)).collect();
+    let read = positions.len() - made.middles;
+    let vectors = made.field.as_ref().map(|field| field.at_vertices(read)).unwrap_or_default();
     let field = made.field.as_ref().map(|field| FieldPicture {
-        vectors: &field.vectors,
+        vectors: &vectors,
         triangles: &field.triangles,
         vertices: &field.vertices,
-        paths: &field.paths,
+        paths: &field.section.paths,
     });
     let report = BundleReport {
         title: &format!("Unit tangent bundle of {}", file_name(input)),

@@ -132,7 +132,7 @@ impl<'a, 'b> Field<'a, 'b> {
     }
 
     /// Levels next to the directions, and turns that go with those of the field.
-    fn section(&self, identification: &Identification) -> Section<'b> {
+    pub fn section(&self, identification: &Identification) -> Section<'b> {
         let layers = self.bundle.layers();
         let count = f64::from(layers);
         let exact: Vec<Option<f64>> = (self.directions.iter().zip(&identification.zeros))

@@ -4,7 +4,7 @@
 //! and that of the bundle, take a direction to levels which differ by the edge's *lag*, a real number of levels that is
 //! determined modulo `N` by the zeros. With lags that round each triangle add up to its curvature on the surface, in levels,
 //! less that of the bundle, the identification of circles over vertices goes on over edges and triangles. Such lags exist
-//! because both curvatures add up to the same: theorem 9 of `docs/theory/bundles.md`.
+//! because both curvatures add up to the same: theorem 8 of `docs/theory/bundles.md`.
 
 use super::charts::ends;
 use super::circle::CircleBundle;

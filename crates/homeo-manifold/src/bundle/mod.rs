@@ -6,6 +6,7 @@
 //! | [`CircleBundle`] | a bundle with regular structure, its tetrahedra and its Euler number |
 //! | [`TangentBundle`] | that of the unit tangent vectors of a closed surface |
 //! | [`Section`] | one level over each vertex; that of a field of vectors; indices, and paths in the bundle |
+//! | [`MiddleSurface`] | the surface over which a field with a vector for each triangle is a section |
 //! | [`WoundPaths`] | indices once more, from tetrahedra and paths alone |
 //!
 //! Source: Yin 2010, chapters 5 to 7. Theory: `docs/theory/bundles.md`.
@@ -15,6 +16,7 @@ mod circle;
 mod cutting;
 mod field;
 mod identification;
+mod middles;
 mod polar;
 mod refine;
 mod section;
@@ -28,6 +30,7 @@ mod walls;
 
 pub use circle::{BundleError, CircleBundle};
 pub use cutting::{Diagonal, Obstruction, cutting_pattern};
+pub use middles::MiddleSurface;
 pub use refine::Carrier;
 pub use section::{PathFault, Section, SectionError, WoundPaths};
 pub use tangent::TangentBundle;

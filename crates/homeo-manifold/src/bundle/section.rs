@@ -9,7 +9,7 @@
 //! closed surface: *the indices add up to the Euler number*, whatever the section (Poincaré and Hopf). The index of a vertex
 //! without a level is that of the polygon of the triangles round it.
 //!
-//! Sections are not in Yin 2010. Proofs: `docs/theory/bundles.md`, theorems 3, 8 and 9; transport along edges is that of Crane,
+//! Sections are not in Yin 2010. Proofs: `docs/theory/bundles.md`, theorems 3, 7 and 8; transport along edges is that of Crane,
 //! Desbrun and Schröder 2010.
 
 use super::circle::CircleBundle;
@@ -62,6 +62,26 @@ pub enum SectionError {
     Opposite { first: u32, second: u32 },
     #[error("the triangles at vertex {vertex} have no angles: move it, or its neighbours, apart")]
     Flat { vertex: u32 },
+    #[error("there are {given} vectors for the {count} triangles of the surface: give one for each")]
+    TriangleCount { given: usize, count: usize },
+    #[error(
+        "triangle {triangle} has no area: a vector for it has no direction; collapse it, or give vectors at vertices"
+    )]
+    FlatTriangle { triangle: u32 },
+    #[error(
+        "the vector of triangle {triangle} is zero, normal to it, or not finite: give it a direction, as indices of such a field \
+         belong to vertices"
+    )]
+    NoVector { triangle: u32 },
+    #[error(
+        "the vectors of the neighbouring triangles {first} and {second}, laid flat, are opposite, so that the field may turn \
+         either way between them: change one of them"
+    )]
+    OppositeTriangles { first: u32, second: u32 },
+    #[error(
+        "triangle {triangle} is none of the surface of middles: make the bundle over the triangles of that surface"
+    )]
+    NotMiddles { triangle: u32 },
     #[error("the surface has a boundary, or is not connected, at triangle {triangle}")]
     NotClosed { triangle: u32 },
 }
@@ -141,6 +161,11 @@ impl<'b> Section<'b> {
     /// With levels and twice the turns, which go with them modulo twice the number of layers and are antisymmetric.
     pub(super) fn with_turns(bundle: &'b CircleBundle, levels: Vec<Option<u32>>, turns: Vec<[i64; 3]>) -> Self {
         Self { bundle, levels, turns }
+    }
+
+    /// The bundle that it is a section of.
+    pub fn bundle(&self) -> &'b CircleBundle {
+        self.bundle
     }
 
     /// The levels, one for each vertex of the surface that is not singular.
@@ -277,6 +302,8 @@ pub(super) fn closed_walls(bundle: &CircleBundle) -> Result<Walls, SectionError>
 mod check;
 #[cfg(test)]
 mod field_tests;
+#[cfg(test)]
+mod middles_tests;
 #[cfg(test)]
 mod tests;
 

@@ -2,6 +2,7 @@
 #![allow(dead_code)] // every test uses another part
 
 pub mod build;
+pub mod bundles;
 pub mod clip;
 pub mod immersed;
 pub mod mutants;

@@ -9,7 +9,7 @@ mod read;
 mod read_hyperbolic;
 mod write;
 
-pub use bundle::write_bundle;
+pub use bundle::{StoredSection, write_bundle};
 pub use read::{MapFileError, read_map};
 pub use read_hyperbolic::{StoredStructure, kind_of, read_hyperbolic};
 pub use write::{

@@ -7,15 +7,15 @@ use super::*;
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::{PI, TAU};
 
-type Vector = [f64; 3];
+pub(super) type Vector = [f64; 3];
 
-struct Surface {
-    places: Vec<Vector>,
-    triangles: Vec<[u32; 3]>,
+pub(super) struct Surface {
+    pub places: Vec<Vector>,
+    pub triangles: Vec<[u32; 3]>,
 }
 
 /// A torus about the z-axis, a little bent so that nothing is in special position.
-fn round_torus(a: u32, b: u32) -> Surface {
+pub(super) fn round_torus(a: u32, b: u32) -> Surface {
     let place = |i: u32, j: u32| {
         let (u, v) = (TAU * (f64::from(i) + 0.13) / f64::from(a), TAU * (f64::from(j) + 0.29) / f64::from(b));
         let radius = 2.0 + (0.8 + 0.05 * (3.0 * u).sin()) * v.cos();
@@ -25,14 +25,14 @@ fn round_torus(a: u32, b: u32) -> Surface {
     Surface { places, triangles: torus(a, b) }
 }
 
-fn ball() -> Surface {
+pub(super) fn ball() -> Surface {
     let (places, triangles) = sphere();
     // Neither round nor symmetric.
     let bent = |p: Vector| [1.1 * p[0] + 0.1 * p[1] * p[2], p[1] - 0.2 * p[0] * p[0], 0.8 * p[2] + 0.15 * p[0]];
     Surface { places: places.into_iter().map(bent).collect(), triangles }
 }
 
-fn random(count: usize, seed: u64) -> Vec<Vector> {
+pub(super) fn random(count: usize, seed: u64) -> Vec<Vector> {
     let mut state = seed;
     let mut next = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -50,19 +50,19 @@ struct Rotation {
     directions: Vec<Option<f64>>,
 }
 
-fn minus(a: Vector, b: Vector) -> Vector {
+pub(super) fn minus(a: Vector, b: Vector) -> Vector {
     [0, 1, 2].map(|k| a[k] - b[k])
 }
 
-fn product(a: Vector, b: Vector) -> f64 {
+pub(super) fn product(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn normal(a: Vector, b: Vector) -> Vector {
+pub(super) fn normal(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn length(a: Vector) -> f64 {
+pub(super) fn length(a: Vector) -> f64 {
     product(a, a).sqrt()
 }
 
@@ -150,7 +150,7 @@ impl Rotation {
     }
 }
 
-fn whole(angle: f64) -> i64 {
+pub(super) fn whole(angle: f64) -> i64 {
     let turns = angle / TAU;
     assert!((turns - turns.round()).abs() < 1e-7, "{turns} turns");
     turns.round() as i64
@@ -166,7 +166,7 @@ fn by_parents(tangent: &TangentBundle, section: &Section, count: usize) -> Vec<i
 }
 
 /// By the tetrahedra alone the indices are the same.
-fn unless_wound(tangent: &TangentBundle, section: &Section) {
+pub(super) fn unless_wound(tangent: &TangentBundle, section: &Section) {
     let bundle = &tangent.bundle;
     let wound = WoundPaths::new(bundle.triangles(), bundle.layers(), &bundle.tetrahedra(), &section.paths()).unwrap();
     let indices: Vec<i64> = (0..bundle.triangles().len() as u32).map(|t| section.index(t)).collect();
