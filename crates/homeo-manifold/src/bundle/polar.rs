@@ -69,9 +69,12 @@ impl Polar {
     ) -> Result<Option<f64>, SectionError> {
         let fan = &self.fans[vertex as usize];
         let at = |side: Side| edges_at(bundle, places, side);
+        // By angles, so that it is the same when triangles are divided.
         let normal = fan.iter().fold([0.0; 3], |sum, &side| {
             let [first, second] = at(side);
-            plus(sum, cross(first, second), 1.0)
+            let across = cross(first, second);
+            let size = dot(across, across).sqrt();
+            if size > 0.0 { plus(sum, across, size.atan2(dot(first, second)) / size) } else { sum }
         });
         let square = dot(normal, normal);
         if !(square > 0.0 && vector.iter().all(|x| x.is_finite())) {

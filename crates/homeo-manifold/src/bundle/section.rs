@@ -127,7 +127,7 @@ impl<'b> Section<'b> {
     ///
     /// # Definition of the index
     /// A vector counts by its part along the surface: the normal is the mean of those of the triangles round the vertex,
-    /// weighted by area, and its direction is an angle, where the angles round the vertex are scaled to add up to 2π. A
+    /// weighted by their angles there, and its direction is an angle, where the angles round the vertex are scaled to add up to 2π. A
     /// direction is transported along an edge by keeping its angle with it. Along an edge from `u` to `v` the field turns by
     /// `θ`, strictly between -π and π, against the transported direction of `u`. With `Ω`, what the scaled angles of a
     /// triangle exceed π by, its index is `(Σ θ + Ω) / 2π`. A vector that is zero, or normal to the surface, gives its vertex
@@ -144,7 +144,7 @@ impl<'b> Section<'b> {
     /// # Example
     /// ```
     /// use homeo_manifold::bundle::{Section, TangentBundle};
-    /// let places = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// let places = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     /// let tangent = TangentBundle::new(&[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], 4, 8)?;
     /// let section = Section::of_field(&tangent, &places, &[[0.3, -0.2, 0.9]; 4])?;
     /// assert_eq!(section.singularities().map(|(_, index)| index).sum::<i64>(), 2);

@@ -79,7 +79,8 @@ impl Rotation {
                 let angle = (product(e, f) / (length(e) * length(f))).clamp(-1.0, 1.0).acos();
                 after[v as usize].insert(a, (b, angle));
                 let n = normal(e, f);
-                normals[v as usize] = [0, 1, 2].map(|axis| normals[v as usize][axis] + n[axis]);
+                let weight = angle / length(n);
+                normals[v as usize] = [0, 1, 2].map(|axis| normals[v as usize][axis] + weight * n[axis]);
             }
         }
         let mut along = HashMap::new();
