@@ -121,8 +121,8 @@ fn options_of_another_method_are_refused() {
             let message = error["error"]["message"].as_str().unwrap_or_default();
             assert!(message.contains(name) && message.contains(method), "{message}");
         }
-        folder.line(&format!("warp points.csv {polygons} --method harmonic {option} -o {name}.csv")).expect(0);
-        folder.line(&format!("warp points.csv {polygons} {option} -o {name}.csv")).expect(0);
+        folder.line(&format!("warp points.csv {polygons} --method harmonic {option} -o taken.csv")).expect(0);
+        folder.line(&format!("warp points.csv {polygons} {option} -o taken.csv")).expect(0);
     }
     let cages = "--from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj --triangles 500";
     folder.line(&format!("warp testdata/meshes/spot.mesh {cages} -o out.vtu")).expect(2);
