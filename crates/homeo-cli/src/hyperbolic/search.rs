@@ -27,6 +27,13 @@ pub struct Found {
     pub canonical: std::result::Result<Canonical, NotCanonical>,
 }
 
+/// Any triangulation of the manifold with its structure, proved; and how many others were tried before.
+struct Metric {
+    triangulation: Triangulation,
+    structure: Structure,
+    tried: usize,
+}
+
 /// The genera of the boundary components that cut-off vertices leave, in ascending order; spheres are inner points.
 pub fn genera(triangulation: &Triangulation) -> Vec<usize> {
     let links = Links::new(triangulation, &Skeleton::new(triangulation));
@@ -41,27 +48,28 @@ pub fn genera(triangulation: &Triangulation) -> Vec<usize> {
 /// # Errors
 /// With exit code 3 where it is proved that there is none, with 4 where none was found.
 pub fn structure(session: &Session, input: &Input, options: &HyperbolicArgs) -> Result<Found> {
-    let mut found = any_structure(session, input, options.retriangulate, options.tries)?;
+    let metric = any_structure(session, input, options.retriangulate, options.tries)?;
     session.stage("canonical");
-    found.canonical =
-        find_canonical(&found.triangulation, &found.structure, 10 * options.tries.max(1), || session.check().is_ok());
+    let tries = 10 * options.tries.max(1);
+    let canonical = find_canonical(&metric.triangulation, &metric.structure, tries, || session.check().is_ok());
     session.check()?;
-    match &found.canonical {
+    let taken = match &canonical {
         Ok(canonical) if options.canonical || input.is_free => {
-            unless_same(&found.triangulation, &canonical.triangulation)?;
-            (found.triangulation, found.structure) = (canonical.triangulation.clone(), canonical.structure.clone());
-            found.skeleton = Skeleton::new(&found.triangulation);
+            unless_same(&metric.triangulation, &canonical.triangulation)?;
+            let (triangulation, structure) = (canonical.triangulation.clone(), canonical.structure.clone());
+            Metric { triangulation, structure, tried: metric.tried }
         }
         Err(reason) if options.canonical => {
             let message = format!("{}: {reason}\n  nothing was written; without --canonical it is", input.name);
             return Err(Failure::limits("not-canonical", message));
         }
-        _ => {}
-    }
-    Ok(found)
+        _ => metric,
+    };
+    let Metric { triangulation, structure, tried } = taken;
+    Ok(Found { skeleton: Skeleton::new(&triangulation), triangulation, structure, tried, canonical })
 }
 
-fn any_structure(session: &Session, input: &Input, retriangulate: bool, tries: usize) -> Result<Found> {
+fn any_structure(session: &Session, input: &Input, retriangulate: bool, tries: usize) -> Result<Metric> {
     session.stage("metric");
     let refusal = match attempt(input.triangulation.clone(), 0) {
         Ok(found) => return Ok(found),
@@ -90,15 +98,13 @@ fn any_structure(session: &Session, input: &Input, retriangulate: bool, tries: u
     Err(refused(input, &refusal, true, tried))
 }
 
-fn attempt(triangulation: Triangulation, tried: usize) -> std::result::Result<Found, NoMetric> {
-    let skeleton = Skeleton::new(&triangulation);
-    let structure = Structure::find(&triangulation, &skeleton)?;
-    let canonical = Err(NotCanonical::NotFound { tried: 0 });
-    Ok(Found { triangulation, skeleton, structure, tried, canonical })
+fn attempt(triangulation: Triangulation, tried: usize) -> std::result::Result<Metric, NoMetric> {
+    let structure = Structure::find(&triangulation, &Skeleton::new(&triangulation))?;
+    Ok(Metric { triangulation, structure, tried })
 }
 
 /// Other triangulations of the manifold, each once; how many where none has a structure.
-fn others(session: &Session, input: &Input, tries: usize) -> Result<std::result::Result<Found, usize>> {
+fn others(session: &Session, input: &Input, tries: usize) -> Result<std::result::Result<Metric, usize>> {
     let unfit = |error: SimplifyError| Failure::limits("not-simplified", format!("{}: {error}", input.name));
     let start = without_inner_vertices(&input.triangulation).map_err(unfit)?;
     let mut simplifier = Simplifier::new(&start, session.common.seed).map_err(unfit)?;

@@ -56,19 +56,15 @@ fn canonical(found: &Found) -> Value {
 }
 
 fn canonical_in_words(found: &Found) -> String {
-    match &found.canonical {
-        Ok(canonical)
-            if canonical.triangulation.len() == found.triangulation.len()
-                && signature(&canonical.triangulation) == signature(&found.triangulation) =>
-        {
-            "yes: the signature is the name of the manifold".to_owned()
-        }
-        Ok(canonical) => {
-            let (tetrahedra, name) = (canonical.triangulation.len(), signature(&canonical.triangulation));
-            format!("{name} ({tetrahedra} tetrahedra) is the name of the manifold; --canonical takes it")
-        }
-        Err(reason) => reason.to_string(),
+    let canonical = match &found.canonical {
+        Ok(canonical) => &canonical.triangulation,
+        Err(reason) => return reason.to_string(),
+    };
+    let name = signature(canonical);
+    if name == signature(&found.triangulation) {
+        return "yes: the signature is the name of the manifold".to_owned();
     }
+    format!("{name} ({} tetrahedra) is the name of the manifold; --canonical takes it", canonical.len())
 }
 
 fn degrees(skeleton: &Skeleton) -> Vec<usize> {

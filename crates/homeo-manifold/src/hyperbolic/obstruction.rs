@@ -95,7 +95,8 @@ impl Obstruction {
     ///
     /// # Guarantee
     /// It finds weights if there are any without a negative one, and there are if lengths of a minimizing sequence of the energy
-    /// are not bounded. Beyond 40 tetrahedra it does not search.
+    /// are not bounded; unless the ones it comes upon have no common divisor that brings them below 2^30. Beyond 40 tetrahedra
+    /// it does not search.
     ///
     /// # Complexity
     /// That of the simplex method with `7 #T` rows: a millisecond for ten tetrahedra, some tens for 40 where weights are found.

@@ -253,8 +253,9 @@ impl Random {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simplify::moves::two_to_one;
     use crate::subdivision::subdivided;
-    use crate::{Homology, Links, Skeleton, from_signature, signature};
+    use crate::{AllowedLinks, Homology, Links, Skeleton, covers, enumerate, from_signature, signature};
 
     fn boundary_genera(triangulation: &Triangulation) -> Vec<Option<usize>> {
         let links = Links::new(triangulation, &Skeleton::new(triangulation));
@@ -302,6 +303,41 @@ mod tests {
             search.run(1000);
             assert_eq!(signature(search.best()), "cPcbbbihq");
         }
+    }
+
+    /// Gluings of three tetrahedra with an edge of degree 1, after some moves 2-3: where the edge can be taken away coverings with
+    /// two and three sheets keep their homology, where not all is as it was.
+    #[test]
+    fn edges_of_degree_one_are_taken_away_and_the_manifold_stays() {
+        let homologies = |triangulation: &Triangulation| {
+            [1, 2, 3].map(|sheets| {
+                let all = covers(triangulation, sheets).unwrap();
+                let mut groups: Vec<String> = all.iter().map(|cover| Homology::new(cover).to_string()).collect();
+                groups.sort();
+                groups
+            })
+        };
+        let (mut taken, mut left, mut random) = (0, 0, Random(3));
+        for entry in enumerate(3, AllowedLinks::Higher).unwrap() {
+            let mut editor = Editor::new(&entry.triangulation).unwrap();
+            shake(&mut editor, &mut random, 4);
+            let before = editor.finished();
+            let skeleton = Skeleton::new(&before);
+            let Some(edge) = skeleton.edges().iter().find(|edge| edge.corners.len() == 1) else { continue };
+            let mut editor = Editor::new(&before).unwrap();
+            let is_taken = two_to_one(&mut editor, edge.corners[0]);
+            let after = editor.finished();
+            if is_taken {
+                assert_eq!(after.len() + 1, before.len(), "{}", entry.signature);
+                assert_eq!(homologies(&after), homologies(&before), "{}", entry.signature);
+                assert_eq!(boundary_genera(&after), boundary_genera(&before), "{}", entry.signature);
+                taken += 1;
+            } else {
+                assert_eq!(signature(&after), signature(&before), "a move that is undone leaves what was");
+                left += 1;
+            }
+        }
+        assert!(taken >= 5 && left >= 5, "{taken} {left}");
     }
 
     #[test]
