@@ -94,7 +94,20 @@ impl Embedding {
         &self.planes
     }
 
-    /// The truncating planes of the neighbour across a face of a tetrahedron of the domain, where the two meet at this face.
+    /// The truncating planes of the neighbour across a face of a tetrahedron of the domain, where the two meet at this face: four
+    /// outward unit normals, by the neighbour's corners. The face is named by its opposite corner.
+    ///
+    /// ```
+    /// use homeo_manifold::hyperbolic::{Embedding, Structure, minkowski::product};
+    /// use homeo_manifold::{Skeleton, from_signature};
+    /// let tripus = from_signature("cPcbbbihq")?;
+    /// let skeleton = Skeleton::new(&tripus);
+    /// let embedding = Embedding::new(&tripus, &skeleton, &Structure::find(&tripus, &skeleton)?).unwrap();
+    /// // Planes at the ends of an edge of the face have the hyperbolic cosine of its length as product, from either side.
+    /// let [here, there] = [embedding.planes()[0], embedding.planes_across(0, 3)];
+    /// assert!((product(here[0], here[1]) - product(there[0], there[1])).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn planes_across(&self, tetrahedron: u32, face: u8) -> [Vector; 4] {
         let (here, face) = (tetrahedron as usize, usize::from(face));
         self.planes[self.neighbours[here][face] as usize].map(|plane| apply(&self.across[here][face], plane))
