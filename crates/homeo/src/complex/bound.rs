@@ -8,7 +8,7 @@ use super::chart::{Cover, Piece};
 use super::frame::{Chart, Frame, Outline};
 use super::guide::Guide;
 use super::speed::EdgeSpeeds;
-use crate::composite::number::{Ball, Number};
+use crate::composite::number::{Form, Number};
 use crate::composite::{JacobianLimits, JacobianVerdict};
 
 /// Pieces that are bounded before it is seen whether to go on: a fixed number, lest the answer depend on threads.
@@ -84,8 +84,8 @@ impl Problem<'_> {
             return None;
         }
         let guide = Guide::at(self.outline, point, None, [0.0; 2]);
-        let mut frame = Frame::<Ball>::new(self.outline, self.speeds);
-        let at_most = frame.evaluate(&Chart::Plane, point.map(Ball::of), &guide).determinant().high();
+        let mut frame = Frame::<Form>::new(self.outline, self.speeds);
+        let at_most = frame.evaluate(&Chart::Plane, point.map(Form::of), &guide).determinant().high();
         (at_most < 0.0).then_some(at_most)
     }
 
@@ -97,7 +97,7 @@ impl Problem<'_> {
         limits: &JacobianLimits,
         is_cancelled: &(dyn Fn() -> bool + Sync),
     ) -> (Outcome, u32) {
-        let mut frame = Frame::<Ball>::new(self.outline, self.speeds);
+        let mut frame = Frame::<Form>::new(self.outline, self.speeds);
         let mut waiting = vec![piece.sides];
         let (mut least, mut boxes) = (f64::INFINITY, 0);
         while let Some(sides) = waiting.pop() {
@@ -110,7 +110,7 @@ impl Problem<'_> {
                 return (Outcome::Undecided(point), boxes);
             }
             boxes += 1;
-            let at = sides.map(|[low, high]| Ball::between(low, high));
+            let at = [0, 1].map(|axis| Form::between(sides[axis][0], sides[axis][1]).along(axis));
             let guide = Guide::at(self.outline, point, piece.vertex(), piece.direction(middle[1]));
             let determinant = frame.evaluate(&piece.chart, at, &guide).determinant();
             let (low, high) = (determinant.low(), determinant.high());

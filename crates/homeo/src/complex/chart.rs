@@ -4,7 +4,7 @@ use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::{Sign, orient2d};
 
 use super::frame::{Chart, Outline};
-use crate::composite::number::{Ball, Number};
+use crate::composite::number::{Form, Number};
 
 /// A corner's triangles reach so far, as a part of the distance to the nearest other edge or vertex.
 const REACH: f64 = 0.4;
@@ -18,7 +18,7 @@ const SQUARES: usize = 8;
 /// A part of the domain, to be bounded by itself.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
-    pub chart: Chart<Ball>,
+    pub chart: Chart<Form>,
     pub sides: [[f64; 2]; 2],
 }
 
@@ -48,7 +48,7 @@ impl Cover {
         let distance = |i: usize| from_segment(v, [outline.vertices[i], outline.vertices[outline.next[i]]]);
         let clear = others.map(distance).fold(f64::INFINITY, f64::min);
         let ends = [after, before].map(|i| shortened(v, outline.vertices[i], REACH * clear));
-        let middle = |end: &[Ball; 2]| end.map(|c| c.middle);
+        let middle = |end: &[Form; 2]| end.map(|c| c.middle);
         let [first, last] = [middle(&ends[0]), middle(&ends[1])];
         let from = first[1].atan2(first[0]);
         let angle = (last[1].atan2(last[0]) - from).rem_euclid(std::f64::consts::TAU);
@@ -56,9 +56,9 @@ impl Cover {
         let length = first[0].hypot(first[1]).min(last[0].hypot(last[1]));
         let inner = |k: usize| {
             let (y, x) = (from + angle * k as f64 / parts as f64).sin_cos();
-            [length * x, length * y].map(Ball::of)
+            [length * x, length * y].map(Form::of)
         };
-        let vectors: Vec<[Ball; 2]> = (0..=parts)
+        let vectors: Vec<[Form; 2]> = (0..=parts)
             .map(|k| {
                 if k == 0 {
                     ends[0]
@@ -142,11 +142,11 @@ impl Piece {
 }
 
 /// An exact part, `2^-k`, of the vector from one vertex to another, no longer than `reach`; enclosed.
-fn shortened(from: Point2, to: Point2, reach: f64) -> [Ball; 2] {
+fn shortened(from: Point2, to: Point2, reach: f64) -> [Form; 2] {
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
     let halvings = (length / reach).log2().ceil().clamp(1.0, 200.0) as i32;
-    let factor = Ball::of(0.5f64.powi(halvings));
-    std::array::from_fn(|k| (Ball::of(to[k]) - Ball::of(from[k])) * factor)
+    let factor = Form::of(0.5f64.powi(halvings));
+    std::array::from_fn(|k| (Form::of(to[k]) - Form::of(from[k])) * factor)
 }
 
 /// How far a point is from a segment, rounded.

@@ -9,7 +9,7 @@ use homeo_core::predicate::{Sign, orient2d};
 
 use super::map::ComplexMap;
 use crate::composite::invert::meeting_edges;
-use crate::composite::number::{Ball, Number};
+use crate::composite::number::{Form, Number};
 use crate::map::Enclosed2;
 
 /// A point and its image, to begin a search with.
@@ -57,7 +57,7 @@ pub(super) fn along_edge(map: &ComplexMap, point: Point2) -> Option<Enclosed2> {
     let (edge, share) = edge_of(crate::map::PlanarBijection::source(map), point)?;
     let outline = map.outline();
     let ends = [edge, outline.next[edge]].map(|i| outline.images[i]);
-    Some(between(ends, &share, map.speeds().enclose(edge, Ball::around(&share))))
+    Some(between(ends, &share, map.speeds().enclose(edge, Form::around(&share))))
 }
 
 /// The preimage of a point on an edge of the target.
@@ -65,14 +65,14 @@ pub(super) fn back_along_edge(map: &ComplexMap, point: Point2) -> Option<Enclose
     let (edge, share) = edge_of(crate::map::PlanarBijection::target(map), point)?;
     let wanted = Interval::around(&share);
     let certain = |t: f64| {
-        let there = map.speeds().enclose(edge, Ball::of(t));
+        let there = map.speeds().enclose(edge, Form::of(t));
         (there.high() <= wanted.low(), there.low() >= wanted.high())
     };
     let low = bisect(|t| certain(t).0, [0.0, 1.0]);
     let high = bisect(|t| certain(t).1, [1.0, 0.0]);
     let outline = map.outline();
     let ends = [edge, outline.next[edge]].map(|i| outline.vertices[i]);
-    Some(between(ends, &share, Ball::between(low, high)))
+    Some(between(ends, &share, Form::between(low, high)))
 }
 
 /// The last number, going from the first end to the second, for which something holds that holds on the way up to some
@@ -93,24 +93,24 @@ fn bisect(holds: impl Fn(f64) -> bool, [mut good, mut bad]: [f64; 2]) -> f64 {
 }
 
 /// The point that lies by a part between two; the ends themselves where the place on the other edge is one.
-fn between([a, b]: [Point2; 2], share: &Rational, part: Ball) -> Enclosed2 {
+fn between([a, b]: [Point2; 2], share: &Rational, part: Form) -> Enclosed2 {
     if share.is_zero() || *share == Rational::ONE {
         return Enclosed2 { point: if share.is_zero() { a } else { b }, radius: 0.0 };
     }
-    let one = Ball::of(1.0);
-    let at: [Ball; 2] = std::array::from_fn(|k| Ball::of(a[k]) * (one - part) + Ball::of(b[k]) * part);
-    Enclosed2 { point: at.map(|c| c.middle), radius: at[0].radius.max(at[1].radius) }
+    let one = Form::of(1.0);
+    let at: [Form; 2] = std::array::from_fn(|k| Form::of(a[k]) * (one - part) + Form::of(b[k]) * part);
+    Enclosed2 { point: at.map(|c| c.middle), radius: at[0].radius().max(at[1].radius()) }
 }
 
 /// The preimage of a point off the edges of the target.
 pub(super) fn invert(map: &ComplexMap, image: Point2) -> Option<Enclosed2> {
     let point = search(map, image)?;
     let there = map.enclose(point);
-    let both: [Ball; 2] = std::array::from_fn(|k| there[k].hull(Ball::of(image[k])));
-    if both.iter().any(|c| !c.radius.is_finite()) {
+    let both: [Form; 2] = std::array::from_fn(|k| there[k].hull(Form::of(image[k])));
+    if both.iter().any(|c| !c.radius().is_finite()) {
         return None;
     }
-    let diameter = 2.0 * both[0].radius.hypot(both[1].radius) * (1.0 + 1e-12);
+    let diameter = 2.0 * both[0].radius().hypot(both[1].radius()) * (1.0 + 1e-12);
     let target = crate::map::PlanarBijection::target(map);
     let path = if meeting_edges(target, both)? < 2 { diameter } else { 2.0 * diameter };
     // The rate in the box must hold what made the box; a few attempts.

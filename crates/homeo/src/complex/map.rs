@@ -9,7 +9,7 @@ use super::guide::Guide;
 use super::invert::{self, Start};
 use super::optimize::Search;
 use super::speed::EdgeSpeeds;
-use crate::composite::number::{Ball, Number};
+use crate::composite::number::{Form, Number};
 use crate::composite::{Jacobian, JacobianLimits, JacobianVerdict};
 use crate::map::{Enclosed2, PlanarBijection, PlanarEvaluationError};
 use crate::progress::Progress;
@@ -246,7 +246,7 @@ impl ComplexMap {
             return Ok(image);
         }
         let image = self.enclose(point);
-        let radius = image[0].radius.max(image[1].radius);
+        let radius = image[0].radius().max(image[1].radius());
         if !radius.is_finite() {
             return Err(PlanarEvaluationError::NotProved(0));
         }
@@ -292,16 +292,16 @@ impl ComplexMap {
     }
 
     /// The image of a point.
-    pub(super) fn enclose(&self, point: Point2) -> [Ball; 2] {
+    pub(super) fn enclose(&self, point: Point2) -> [Form; 2] {
         let guide = Guide::at(&self.outline, point, None, [0.0; 2]);
-        Frame::<Ball>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, point.map(Ball::of), &guide).value
+        Frame::<Form>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, point.map(Form::of), &guide).value
     }
 
     /// At least the norm of the inverse of the derivative in a box round a point; not a number if unknown.
     pub(super) fn inverse_rate(&self, point: Point2, radius: f64) -> f64 {
         let guide = Guide::at(&self.outline, point, None, [0.0; 2]);
-        let at = point.map(|c| Ball { middle: c, radius });
-        let local = Frame::<Ball>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, at, &guide);
+        let at = [0, 1].map(|axis| Form::within(radius, point[axis]).along(axis));
+        let local = Frame::<Form>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, at, &guide);
         let least = local.determinant().low();
         let squares: f64 = local.along.iter().flatten().map(|d| d.size() * d.size()).sum();
         if least > 0.0 { squares.sqrt() / least * (1.0 + 1e-12) } else { f64::NAN }

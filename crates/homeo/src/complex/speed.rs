@@ -1,7 +1,7 @@
 //! Speeds: how the image of a point runs along the image of its edge.
 
 use super::SpeedError;
-use crate::composite::number::{Ball, Number};
+use crate::composite::number::{Form, Number};
 
 /// For each edge an increasing polynomial `σ` from `[0, 1]` onto `[0, 1]`, in Bernstein form of one degree `d` for all:
 /// `σ(t) = sum c_ν b_{ν,d}(t)` with control values `0 = c_0 < c_1 < ... < c_d = 1`.
@@ -68,8 +68,8 @@ impl EdgeSpeeds {
     }
 
     /// The same for all numbers of a ball.
-    pub(super) fn enclose(&self, edge: usize, t: Ball) -> Ball {
-        t + t * (Ball::of(1.0) - t) * horner(&self.quotient::<Ball>(edge), t)
+    pub(super) fn enclose(&self, edge: usize, t: Form) -> Form {
+        t + t * (Form::of(1.0) - t) * horner(&self.quotient::<Form>(edge), t)
     }
 
     /// Coefficients of the polynomial `(σ(t) - t) / (t (1 - t))`, from the constant one on; `d - 1` of them.

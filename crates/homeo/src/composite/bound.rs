@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::chart::{Chart, Step};
 use super::frame::Frame;
 use super::guide::Guide;
-use super::number::Ball;
+use super::number::Form;
 use super::triangulation::{Tiling, TriangulationError, check_tiling};
 
 /// How long [`bound_jacobian`] tries.
@@ -199,7 +199,7 @@ impl Step {
         limits: &JacobianLimits,
         is_cancelled: &(dyn Fn() -> bool + Sync),
     ) -> (Outcome, u32) {
-        let mut frame = Frame::<Ball>::new(self, chart);
+        let mut frame = Frame::<Form>::new(self, chart);
         let mut waiting = vec![[[0.0, 1.0], [0.0, 1.0]]];
         let (mut least, mut boxes) = (f64::INFINITY, 0);
         while let Some(sides) = waiting.pop() {
@@ -208,9 +208,9 @@ impl Step {
                 return (Outcome::Undecided([s, lambda]), boxes);
             }
             boxes += 1;
-            let [s_ball, lambda_ball] = sides.map(|[low, high]| Ball::between(low, high));
-            let guide = frame.guide(s_ball, lambda_ball);
-            let determinant = frame.evaluate(s_ball, lambda_ball, &guide).determinant;
+            let at = [0, 1].map(|axis| Form::between(sides[axis][0], sides[axis][1]).along(axis));
+            let guide = frame.guide(s, lambda);
+            let determinant = frame.evaluate(at[0], at[1], &guide).determinant;
             let (low, high) = (determinant.low(), determinant.high());
             if low > 0.0 && low >= limits.sharpness * high {
                 least = least.min(low);
@@ -239,7 +239,7 @@ impl Step {
     }
 }
 
-impl Frame<'_, Ball> {
+impl Frame<'_, Form> {
     /// Along which of `s` and `λ` a box is longer, in lengths that matter: those in the plane against the distance of the
     /// nearest vertex, and the angle at `v`.
     fn longer_side(&self, sides: [[f64; 2]; 2], guide: &Guide) -> usize {
@@ -248,8 +248,8 @@ impl Frame<'_, Ball> {
         let length = (from[0] + lambda * across[0]).hypot(from[1] + lambda * across[1]);
         let width = across[0].hypot(across[1]) * (sides[1][1] - sides[1][0]);
         let along = length * (sides[0][1] - sides[0][0]) / guide.nearest;
-        // Off the apex directions do not matter.
-        let turned = if self.apex(guide).is_some() { width / length } else { 0.0 };
+        // Directions matter at a vertex only.
+        let turned = if self.apex().is_some() { width / length } else { 0.0 };
         usize::from((sides[0][1] * width / guide.nearest).max(turned) > along)
     }
 }

@@ -4,12 +4,12 @@
 //! is the only vertex of the domain in it, if there is one. What is singular in the formulas of mean value coordinates, at
 //! the vertex and, if the side to `p` is part of an edge of the domain, along `λ = 0`, cancels by hand; the proof is in
 //! `docs/theory/composite.md`. What is left is analytic on the closed chart, so that it is evaluated, with its derivatives,
-//! in doubles and in balls by one text, [`Frame::evaluate`](super::frame::Frame::evaluate).
+//! in doubles and in affine forms by one text, [`Frame::evaluate`](super::frame::Frame::evaluate).
 
 use homeo_core::number::Rational;
 use homeo_core::planar::{PlanarDomain, Point2};
 
-use super::number::{Ball, Number};
+use super::number::{Form, Number};
 use super::triangulation::{Tiling, next_vertices};
 
 /// Which edge of the domain a chart touches along `λ = 0`.
@@ -62,7 +62,7 @@ pub(super) struct Chart {
     pub part: Part,
     pub touch: Touch,
     /// Twice the signed area of `(v, p, q)`.
-    pub turn: Ball,
+    pub turn: Form,
 }
 
 /// A mean value map from one domain to another, and the charts of the first.
@@ -132,7 +132,7 @@ impl Step {
 
     /// A chart; `is_mirrored` if its corners run clockwise.
     fn chart(&self, corners: [u32; 3], part: Part, is_mirrored: bool, area: &Rational) -> Chart {
-        let turn = Ball::around(&(area / &Rational::from(part.divisor())));
+        let turn = Form::around(&(area / &Rational::from(part.divisor())));
         let turn = if is_mirrored { turn.opposite() } else { turn };
         let is_edge = |from: u32, to: u32| self.is_vertex(from) && self.next[from as usize] == to;
         let touch = match corners {

@@ -5,11 +5,11 @@ use homeo_core::planar::Point2;
 use super::chart::{Chart, Step};
 use super::frame::{Frame, Local};
 use super::guide::Guide;
-use super::number::{Ball, Number};
+use super::number::{Form, Number};
 use super::vector::cross;
 
-/// A box of the plane.
-pub(crate) type BallPoint = [Ball; 2];
+/// A box of the plane: ranges of both coordinates.
+pub(crate) type Region = [Form; 2];
 
 /// So many parts of a chart are enclosed each by itself where a box is as large as its distance from the vertex.
 const DIRECTIONS: u32 = 32;
@@ -69,8 +69,8 @@ impl Step {
         (local.image, derivative(&local))
     }
 
-    /// Calls `each` with the parts of all charts that a box may meet.
-    fn meet(&self, at: BallPoint, mut each: impl FnMut(&mut Frame<Ball>, [Ball; 2])) {
+    /// Calls `each` with the parts of all charts that a region may meet.
+    fn meet(&self, at: Region, mut each: impl FnMut(&mut Frame<Form>, [Form; 2])) {
         for chart in &self.charts {
             // Quickly first, with room for rounding.
             let corners = chart.corners.map(|corner| self.corner(corner));
@@ -81,40 +81,40 @@ impl Step {
             if is_apart(0) || is_apart(1) {
                 continue;
             }
-            let mut frame = Frame::<Ball>::new(self, chart);
+            let mut frame = Frame::<Form>::new(self, chart);
             let Some([s, lambda]) = part_of_chart(frame.coordinates(at)) else { continue };
             // Where the box is large as seen from the vertex, directions are taken one after the other.
-            if lambda.radius <= 0.5 / f64::from(DIRECTIONS) {
-                each(&mut frame, [s, lambda]);
+            if lambda.radius() <= 0.5 / f64::from(DIRECTIONS) {
+                each(&mut frame, [s.along(0), lambda.along(1)]);
                 continue;
             }
-            let (low, width) = (lambda.low(), 2.0 * lambda.radius / f64::from(DIRECTIONS));
+            let (low, width) = (lambda.low(), 2.0 * lambda.radius() / f64::from(DIRECTIONS));
             for part in 0..DIRECTIONS {
                 let from = low + width * f64::from(part);
                 // Overlapping, so that rounding leaves nothing out.
-                let lambda = Ball::between((from - 1e-9).max(0.0), (from + width + 1e-9).min(1.0));
-                each(&mut frame, [s, lambda]);
+                let lambda = Form::between((from - 1e-9).max(0.0), (from + width + 1e-9).min(1.0));
+                each(&mut frame, [s.along(0), lambda.along(1)]);
             }
         }
     }
 
     /// A box that holds the images of all points of the closed domain in a box; unknown where that is too large.
-    pub(super) fn enclose(&self, at: BallPoint) -> BallPoint {
-        let mut hull: Option<BallPoint> = None;
+    pub(super) fn enclose(&self, at: Region) -> Region {
+        let mut hull: Option<Region> = None;
         self.meet(at, |frame, sides| {
-            let guide = frame.guide(sides[0], sides[1]);
-            let image = frame.evaluate(sides[0], sides[1], &guide).image;
+            let guide = frame.guide(sides[0].middle, sides[1].middle);
+            let image = frame.evaluate(sides[0], sides[1], &guide).image.map(Form::range);
             hull = Some(hull.map_or(image, |hull| [hull[0].hull(image[0]), hull[1].hull(image[1])]));
         });
-        hull.unwrap_or([Ball::UNKNOWN; 2])
+        hull.unwrap_or([Form::UNKNOWN; 2])
     }
 
     /// An enclosure of the determinant at a point, if it lies in the domain, off its boundary.
-    pub(super) fn determinant_at(&self, point: Point2) -> Option<Ball> {
-        let mut found: Option<Ball> = None;
-        self.meet(point.map(Ball::of), |frame, sides| {
-            let guide = frame.guide(sides[0], sides[1]);
-            let here = frame.evaluate(sides[0], sides[1], &guide).determinant;
+    pub(super) fn determinant_at(&self, point: Point2) -> Option<Form> {
+        let mut found: Option<Form> = None;
+        self.meet(point.map(Form::of), |frame, sides| {
+            let guide = frame.guide(sides[0].middle, sides[1].middle);
+            let here = frame.evaluate(sides[0], sides[1], &guide).determinant.range();
             found = Some(found.map_or(here, |found| found.hull(here)));
         });
         found
@@ -122,10 +122,10 @@ impl Step {
 
     /// How much faster than the image a point may move within a box, at most: a bound of the norm of the inverse of the
     /// derivative; NaN if there is none.
-    pub(super) fn inverse_rate(&self, at: BallPoint) -> f64 {
+    pub(super) fn inverse_rate(&self, at: Region) -> f64 {
         let mut rate = 0.0;
         self.meet(at, |frame, sides| {
-            let guide = frame.guide(sides[0], sides[1]);
+            let guide = frame.guide(sides[0].middle, sides[1].middle);
             let here = inverse_norm(&frame.evaluate(sides[0], sides[1], &guide));
             rate = if here > rate || here.is_nan() { here } else { rate };
         });
@@ -134,15 +134,15 @@ impl Step {
 }
 
 /// Which part of a chart may have these coordinates `s` and `s λ`; `None` if surely none.
-fn part_of_chart([a, b]: [Ball; 2]) -> Option<[Ball; 2]> {
+fn part_of_chart([a, b]: [Form; 2]) -> Option<[Form; 2]> {
     let behind = (b - a).low();
     if a.low() > 1.0 || a.high() < 0.0 || b.high() < 0.0 || behind > 0.0 {
         return None;
     }
     let s = a.meet(0.0, 1.0);
     let lambda = b / a;
-    let whole = Ball::between(0.0, 1.0);
-    let is_small = lambda.radius < 0.5 && lambda.low() <= 1.0 && lambda.high() >= 0.0;
+    let whole = Form::between(0.0, 1.0);
+    let is_small = lambda.radius() < 0.5 && lambda.low() <= 1.0 && lambda.high() >= 0.0;
     Some([s, if is_small { lambda.meet(0.0, 1.0) } else { whole }])
 }
 
@@ -156,7 +156,7 @@ fn derivative(local: &Local<f64>) -> Jacobian {
 }
 
 /// An upper bound of the norm of the inverse of the derivative.
-fn inverse_norm(local: &Local<Ball>) -> f64 {
+fn inverse_norm(local: &Local<Form>) -> f64 {
     let ([along, across], turn) = (local.axes, local.turn);
     let [first, second] = local.columns;
     let mut squares = 0.0;

@@ -1,11 +1,11 @@
-//! A mean value map in a chart, with its derivatives: in doubles and in balls by one text.
+//! A mean value map in a chart, with its derivatives: in doubles and in affine forms by one text.
 
 use homeo_core::planar::Point2;
 
 use super::chart::{Chart, Step, Touch};
 use super::guide::{Guide, Linear};
-use super::number::{Number, Sight, half_tangent, sine_cosine};
-use super::vector::{Dual, Vector, cross, dot, minus, of, opposite, plus, scaled, times};
+use super::number::{Edge, Motion, Number, Sight, half_tangent};
+use super::vector::{Dual, Vector, cross, dot, minus, of, opposite, plus, scaled};
 
 /// A chart and all vertices as seen from its own.
 pub(super) struct Frame<'a, T> {
@@ -17,10 +17,8 @@ pub(super) struct Frame<'a, T> {
     /// Of each vertex: where it is, and where it goes, less where `v` is, and where it or, if it is no vertex, the
     /// first vertex goes.
     pub offsets: Vec<[Vector<T>; 2]>,
-    /// Of each edge, by its first vertex: its vector, reversed and conjugated.
-    edges: Vec<Vector<T>>,
-    /// Of each edge: no less than its length.
-    lengths: Vec<f64>,
+    /// By their first vertices.
+    edges: Vec<Edge<T>>,
     sights: Vec<Sight<T>>,
     /// Of each edge, by its first vertex: the half tangent and its gradient.
     tangents: Vec<[T; 3]>,
@@ -52,14 +50,12 @@ impl<'a, T: Number> Frame<'a, T> {
         let offsets: Vec<_> = step.points.iter().zip(&step.images).map(offset).collect();
         let edge = |(from, &to): (&Point2, &u32)| {
             let [x, y] = minus(of::<T>(*from), of(step.points[to as usize]));
-            [x, y.opposite()]
+            Edge { vector: [x, y.opposite()], length: T::length(x, y).most() }
         };
-        let edges: Vec<Vector<T>> = step.points.iter().zip(&step.next).map(edge).collect();
-        let lengths = edges.iter().map(|&[x, y]| T::length(x, y).most()).collect();
-        let nothing = Sight { unit: of([0.0; 2]), inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0, width: 0.0 };
-        let sights = vec![nothing; offsets.len()];
+        let edges = step.points.iter().zip(&step.next).map(edge).collect();
+        let sights = vec![nothing(); offsets.len()];
         let tangents = vec![[T::of(0.0); 3]; offsets.len()];
-        Self { step, chart, axes, turn: T::of_ball(chart.turn), offsets, edges, lengths, sights, tangents }
+        Self { step, chart, axes, turn: T::of_form(chart.turn), offsets, edges, sights, tangents }
     }
 
     /// Two coordinates of a point: `s`, and `s λ`.
@@ -74,46 +70,36 @@ impl<'a, T: Number> Frame<'a, T> {
     /// Any guide gives the same exact result.
     pub fn evaluate(&mut self, s: T, lambda: T, guide: &Guide) -> Local<T> {
         let along = plus(self.axes[0], scaled(lambda, self.axes[1]));
-        if self.apex(guide).is_none() {
-            return self.evaluate_at(scaled(s, along), guide);
-        }
-        let towards = T::sight(along, along).unit;
+        let Some(apex) = self.apex() else { return self.evaluate_at(scaled(s, along), guide) };
+        let towards = T::sight(along, &T::motion(along)).unit;
         let length = T::length(along[0], along[1]);
         // Instead of ∂/∂λ the derivative almost across e, lest determinants be differences of large numbers.
         let skew = T::of(dot(self.axes[1], along).near() / dot(along, along).near());
         let across = minus(self.axes[1], scaled(skew, along));
         let length = Dual([length, T::of(0.0), dot(towards, self.axes[1])]);
         let view = View { position: scaled(s, along), s, along, across, skew, length };
-        self.look(view.position, opposite(towards), guide);
-        let mut edges = Vec::with_capacity(3);
-        for touch in [Touch::Next, Touch::Previous] {
-            let edge = self.edge_at_vertex(touch);
-            edges.push(self.special_at_vertex(touch, &view, lambda, guide.near_edge == Some(edge)));
-        }
-        if let Some(edge) = guide.near_edge.filter(|&edge| !self.is_at_vertex(edge)) {
-            edges.push(self.special_edge(edge, &view));
-        }
+        self.look(view.position, Some((apex, opposite(towards))));
+        let edges = [Touch::Next, Touch::Previous].map(|touch| self.edge_at_apex(touch, &view, lambda));
         let [weight, first, second, own] = self.sums(&edges, &view, guide);
         let total = own.plus(Dual([s, T::of(1.0), (skew * s).opposite()]).times(weight));
         let rest = [first.over(total), second.over(total)];
         self.assemble(&view, rest, &guide.linear)
     }
 
-    /// The vertex of the domain at which a box is seen along directions: the apex, if it is one and the box is near.
-    pub fn apex(&self, guide: &Guide) -> Option<usize> {
+    /// The apex, if it is a vertex of the domain.
+    pub fn apex(&self) -> Option<usize> {
         let v = self.chart.corners[0];
-        (self.step.is_vertex(v) && !guide.is_off_apex).then_some(v as usize)
+        self.step.is_vertex(v).then_some(v as usize)
     }
 
-    /// The map and its derivative at `v + position`, which is no vertex of the domain, and on no edge but the near one.
+    /// The map and its derivative at `v + position`, in the open domain.
     fn evaluate_at(&mut self, position: Vector<T>, guide: &Guide) -> Local<T> {
         let (zero, one) = (T::of(0.0), T::of(1.0));
         let axes = [[one, zero], [zero, one]];
         let [along, across] = axes;
         let view = View { position, s: one, along, across, skew: zero, length: Dual([one, zero, zero]) };
-        self.look(position, along, guide);
-        let edges: Vec<_> = guide.near_edge.map(|edge| self.special_edge(edge, &view)).into_iter().collect();
-        let [weight, first, second, _] = self.sums(&edges, &view, guide);
+        self.look(position, None);
+        let [weight, first, second, _] = self.sums(&[], &view, guide);
         let rest = [first.over(weight), second.over(weight)];
         let slope = |k: usize| -> Vector<T> { std::array::from_fn(|row| rest[row].0[k + 1]) };
         let columns: [Vector<T>; 2] = std::array::from_fn(|k| plus(apply(&guide.linear, axes[k]), slope(k)));
@@ -126,38 +112,23 @@ impl<'a, T: Number> Frame<'a, T> {
         Local { image: plus(base, moved), determinant: own + mixed, axes, columns, turn: one }
     }
 
-    /// Sums of weights, and of weights times residuals, of all vertices but `v`; and the weight of `v`, times `s`. All
-    /// times the factors of all special edges.
-    fn sums(&self, edges: &[Special<T>], view: &View<T>, guide: &Guide) -> [Dual<T>; 4] {
-        let (zero, one) = (T::of(0.0), T::of(1.0));
-        let distance = guide.near_vertex.map(|vertex| {
-            let [x, y] = minus(self.offsets[vertex][0], view.position);
-            view.chain(T::length(x, y), opposite(self.sights[vertex].unit))
-        });
-        let whole = edges.iter().fold(Dual([one, zero, zero]), |all, edge| all.with(edge.factor));
-        let [others, near] = self.regular_sums(guide);
-        let chained = |[value, x, y]: [T; 3]| view.chain(value, [x, y]);
-        let regular = |k: usize| whole.times(chained(others[k]).with(distance).plus(chained(near[k])));
-        let [mut weight, mut first, mut second] = [regular(0), regular(1), regular(2)];
-        let mut own = Dual([zero; 3]);
-        for (number, edge) in edges.iter().enumerate() {
-            let factors = edges.iter().enumerate().filter(|(other, _)| *other != number);
-            let tangent = factors.fold(edge.tangent, |product, (_, other)| product.with(other.factor));
-            for k in edge.ends.into_iter().flatten() {
-                let Sight { inverse, pull, .. } = self.sights[k];
-                let share = if guide.near_vertex == Some(k) {
-                    tangent
-                } else {
-                    tangent.times(view.chain(inverse, scaled(inverse, pull)).with(distance))
-                };
-                let [x, y] = self.residual(k, guide);
-                weight = weight.plus(share);
-                first = first.plus(share.times_constant(x));
-                second = second.plus(share.times_constant(y));
-            }
-            if edge.ends.iter().flatten().count() == 1 {
-                own = own.plus(tangent.over(view.length).with(distance));
-            }
+    /// Sums of weights, and of weights times residuals, of all vertices but the apex; and the weight of the apex, times `s`. All
+    /// times the factor of the edge that is touched.
+    fn sums(&self, edges: &[AtApex<T>], view: &View<T>, guide: &Guide) -> [Dual<T>; 4] {
+        let factor = edges.iter().find_map(|edge| edge.factor);
+        let [mut weight, mut first, mut second] =
+            self.regular_sums(guide).map(|[value, x, y]| view.chain(value, [x, y]).with(factor));
+        let mut own = Dual([T::of(0.0); 3]);
+        for edge in edges {
+            // Its own factor is in its tangent.
+            let tangent = edge.tangent.with(factor.filter(|_| edge.factor.is_none()));
+            let Sight { inverse, pull, .. } = self.sights[edge.end];
+            let share = tangent.times(view.chain(inverse, scaled(inverse, pull)));
+            let [x, y] = self.residual(edge.end, guide);
+            weight = weight.plus(share);
+            first = first.plus(share.times_constant(x));
+            second = second.plus(share.times_constant(y));
+            own = own.plus(tangent.over(view.length));
         }
         [weight, first, second, own]
     }
@@ -183,19 +154,10 @@ impl<'a, T: Number> Frame<'a, T> {
         }
     }
 
-    pub fn neighbour(&self, touch: Touch) -> usize {
+    /// The other end of an edge at the apex.
+    fn neighbour(&self, touch: Touch) -> usize {
         let v = self.chart.corners[0] as usize;
         (if touch == Touch::Next { self.step.next[v] } else { self.step.previous[v] }) as usize
-    }
-
-    /// The number of an edge at `v`: that of its first vertex.
-    pub fn edge_at_vertex(&self, touch: Touch) -> usize {
-        if touch == Touch::Next { self.chart.corners[0] as usize } else { self.neighbour(touch) }
-    }
-
-    fn is_at_vertex(&self, edge: usize) -> bool {
-        let v = self.chart.corners[0] as usize;
-        edge == v || self.step.next[edge] as usize == v
     }
 
     /// How far a vertex misses its image under the linear map.
@@ -205,52 +167,36 @@ impl<'a, T: Number> Frame<'a, T> {
         minus(minus(image, of(guide.shift)), apply(&guide.linear, offset))
     }
 
-    /// Looks at all vertices and edges from `v + offset`; at `v` itself in the direction `towards`.
-    fn look(&mut self, offset: Vector<T>, towards: Vector<T>, guide: &Guide) {
-        let v = self.apex(guide);
+    /// Looks at all vertices and edges from `v + offset`; at the apex, if that is one, in a direction, and not at its edges.
+    fn look(&mut self, offset: Vector<T>, apex: Option<(usize, Vector<T>)>) {
+        let motion = T::motion(offset);
         for (sight, [at, _]) in self.sights.iter_mut().zip(&self.offsets) {
-            *sight = T::sight(minus(*at, offset), offset);
+            *sight = T::sight(minus(*at, offset), &motion);
         }
-        if let Some(v) = v {
-            self.sights[v] = Sight { unit: towards, inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0, width: 0.0 };
+        if let Some((v, unit)) = apex {
+            self.sights[v] = Sight { unit, ..nothing() };
         }
-        let (half, reach) = (T::of(0.5), T::reach(offset));
         for (i, tangent) in self.tangents.iter_mut().enumerate() {
             let k = self.step.next[i] as usize;
-            // Treated by themselves; what another box left here must go.
-            if v.is_some_and(|v| i == v || k == v) || guide.near_edge == Some(i) {
-                *tangent = [T::of(0.0); 3];
-                continue;
-            }
-            let (from, to) = (&self.sights[i], &self.sights[k]);
-            // The difference of pulls 1 / conj(z) as a product: far edges are seen to be small.
-            let turning = times(times(from.pull, to.pull), self.edges[i]);
-            let t = T::half_tangent(from, to, self.lengths[i], reach);
-            let rate = half + half * (t * t);
-            *tangent = [t, rate * turning[1], (rate * turning[0]).opposite()];
+            *tangent = match apex {
+                Some((v, _)) if i == v || k == v => [T::of(0.0); 3],
+                _ => tangent_of([&self.sights[i], &self.sights[k]], &self.edges[i], &motion),
+            };
         }
     }
 
-    /// Sums over all other vertices, of edges that are not special only: of the weights, and of weights times residuals; each
-    /// with its gradient in the plane. First those of all vertices but a near one, then those of this, times its distance.
-    fn regular_sums(&self, guide: &Guide) -> [[[T; 3]; 3]; 2] {
-        let v = self.apex(guide);
-        let mut sums = [[[T::of(0.0); 3]; 3]; 2];
+    /// Sums of weights, and of weights times both coordinates of residuals, with gradients in the plane.
+    fn regular_sums(&self, guide: &Guide) -> [[T; 3]; 3] {
+        let apex = self.apex();
+        let mut sums = [[T::of(0.0); 3]; 3];
         for (i, sight) in self.sights.iter().enumerate() {
-            if v == Some(i) {
+            if apex == Some(i) {
                 continue;
             }
             let (before, after) = (&self.tangents[self.step.previous[i] as usize], &self.tangents[i]);
-            let tangent: [T; 3] = std::array::from_fn(|k| before[k] + after[k]);
-            let is_near = guide.near_vertex == Some(i);
-            let weight = if is_near {
-                tangent
-            } else {
-                let [value, x, y] = tangent;
-                [value, x + value * sight.pull[0], y + value * sight.pull[1]].map(|c| sight.inverse * c)
-            };
+            let [value, x, y]: [T; 3] = std::array::from_fn(|k| before[k] + after[k]);
+            let weight = [value, x + value * sight.pull[0], y + value * sight.pull[1]].map(|c| sight.inverse * c);
             let [x, y] = self.residual(i, guide);
-            let sums = &mut sums[usize::from(is_near)];
             for k in 0..3 {
                 sums[0][k] = sums[0][k] + weight[k];
                 sums[1][k] = sums[1][k] + weight[k] * x;
@@ -260,25 +206,14 @@ impl<'a, T: Number> Frame<'a, T> {
         sums
     }
 
-    /// An edge that does not end at `v`, times the sine of its angle.
-    fn special_edge(&self, edge: usize, view: &View<T>) -> Special<T> {
-        let other = self.step.next[edge] as usize;
-        let (from, to) = (&self.sights[edge], &self.sights[other]);
-        let turning = times(times(from.pull, to.pull), self.edges[edge]);
-        let [sine, cosine] = T::sine_cosine(from, to, self.lengths[edge], T::reach(view.position));
-        let angle = view.chain(T::of(0.0), [turning[1], turning[0].opposite()]);
-        Special::near(sine, cosine, angle, [Some(edge), Some(other)])
-    }
-
-    /// An edge that ends at `v`; if the chart touches it, times `λ`, which cancels.
-    fn special_at_vertex(&self, touch: Touch, view: &View<T>, lambda: T, is_near: bool) -> Special<T> {
-        let k = self.neighbour(touch);
-        let ends = [Some(k), None];
-        let Sight { unit, inverse, pull, .. } = self.sights[k];
+    /// An edge that ends at the apex; if the chart touches it, times `λ`, which cancels.
+    fn edge_at_apex(&self, touch: Touch, view: &View<T>, lambda: T) -> AtApex<T> {
+        let end = self.neighbour(touch);
+        let Sight { unit, inverse, pull, .. } = self.sights[end];
         let View { position, s, along, across, skew, length: Dual([size, _, growth]) } = *view;
         if self.chart.touch == touch {
             // (|e| r + e . there) / |2 turn|.
-            let there = minus(self.offsets[k][0], position);
+            let there = minus(self.offsets[end][0], position);
             let distance = T::of(1.0) / inverse;
             let value = size * distance + dot(along, there);
             let by_s = (size * dot(unit, along) + size * size).opposite();
@@ -286,43 +221,43 @@ impl<'a, T: Number> Frame<'a, T> {
             let by_lambda = growth * distance - s * (size * dot(unit, side)) + dot(side, there) - s * dot(along, side);
             let by_across = by_lambda - skew * (s * by_s);
             let sign = if touch == Touch::Next { 2.0 } else { -2.0 };
-            let divisor = T::of(sign) * self.turn;
+            let divisor = self.turn.by(sign);
             let factor = Some(Dual([lambda, T::of(0.0), T::of(1.0)]));
-            return Special { factor, tangent: Dual([value, by_s, by_across].map(|c| c / divisor)), ends };
+            return AtApex { factor, tangent: Dual([value, by_s, by_across].map(|c| c / divisor)), end };
         }
         let towards = self.sights[self.chart.corners[0] as usize].unit;
         let turning = s * cross(across, pull) - self.turn / (size * size);
-        let angle = Dual([T::of(0.0), cross(along, pull), turning]);
-        let (from, to, angle) = match touch {
+        let angle = [cross(along, pull), turning];
+        let (from, to, [by_s, by_across]) = match touch {
             Touch::Next => (towards, unit, angle),
-            _ => (unit, towards, Dual(angle.0.map(T::opposite))),
+            _ => (unit, towards, angle.map(T::opposite)),
         };
-        if is_near {
-            let [sine, cosine] = sine_cosine(from, to);
-            return Special::near(sine, cosine, angle, ends);
-        }
         let t = half_tangent(from, to);
-        let rate = T::of(0.5) + T::of(0.5) * (t * t);
-        Special { factor: None, tangent: Dual([t, rate * angle.0[1], rate * angle.0[2]]), ends }
+        let rate = T::of(0.5) + (t * t).by(0.5);
+        AtApex { factor: None, tangent: Dual([t, rate * by_s, rate * by_across]), end }
     }
 }
 
-/// An edge that is treated by itself: its half tangent times a factor that makes it smooth.
-struct Special<T> {
-    /// What all other edges are multiplied by; `None` for one.
+fn nothing<T: Number>() -> Sight<T> {
+    Sight { unit: of([0.0; 2]), inverse: T::of(0.0), pull: of([0.0; 2]), slack: 0.0, left: 1.0 }
+}
+
+/// The half tangent of an edge, with its gradient in the plane.
+fn tangent_of<T: Number>([from, to]: [&Sight<T>; 2], edge: &Edge<T>, motion: &Motion) -> [T; 3] {
+    let swing = T::swing(from, to, edge, motion);
+    let t = T::half_tangent(from, to, &swing);
+    let rate = T::of(0.5) + (t * t).by(0.5);
+    [t, rate * swing.pull[1], (rate * swing.pull[0]).opposite()]
+}
+
+/// An edge that ends at the apex.
+struct AtApex<T> {
+    /// What all other edges are multiplied by, if the chart touches it.
     factor: Option<Dual<T>>,
-    /// The half tangent times the factor.
+    /// Its half tangent, times the factor.
     tangent: Dual<T>,
-    /// Its ends but `v`.
-    ends: [Option<usize>; 2],
-}
-
-impl<T: Number> Special<T> {
-    /// With the sine as factor: `sin α tan(α / 2) = 1 - cos α`.
-    fn near(sine: T, cosine: T, Dual([_, by_s, by_lambda]): Dual<T>, ends: [Option<usize>; 2]) -> Self {
-        let factor = Some(Dual([sine, cosine * by_s, cosine * by_lambda]));
-        Self { factor, tangent: Dual([T::of(1.0) - cosine, sine * by_s, sine * by_lambda]), ends }
-    }
+    /// Its other end.
+    end: usize,
 }
 
 /// Where one looks from.
@@ -346,5 +281,5 @@ impl<T: Number> View<T> {
 }
 
 fn apply<T: Number>(linear: &Linear, vector: Vector<T>) -> Vector<T> {
-    std::array::from_fn(|k| T::of(linear[k][0]) * vector[0] + T::of(linear[k][1]) * vector[1])
+    std::array::from_fn(|k| vector[0].by(linear[k][0]) + vector[1].by(linear[k][1]))
 }

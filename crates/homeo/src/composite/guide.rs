@@ -2,16 +2,8 @@
 
 use homeo_core::planar::Point2;
 
-use super::chart::Touch;
 use super::frame::Frame;
-use super::number::Ball;
-use super::vector::dot;
-
-/// A box is bounded in the plane if it is not larger than this part of its distance from the apex, by each coordinate.
-const OFF_APEX: f64 = 0.15;
-/// The distance of the nearest vertex is factored out if its square is less than this part of that of the next one: where
-/// no weight dominates, a factor only widens.
-const MUCH_NEARER: f64 = 0.4;
+use super::number::Form;
 
 /// A linear map near the map: what of it is reproduced exactly is not left to sums of enclosures.
 pub(super) type Linear = [[f64; 2]; 2];
@@ -23,85 +15,35 @@ pub(super) struct Guide {
     pub linear: Linear,
     /// after which one goes by so much further: nothing, if the apex is a vertex.
     pub shift: Point2,
-    /// Whether the box is so far from the apex that it is bounded by gradients in the plane, if that is a vertex too.
-    pub is_off_apex: bool,
-    /// The edge, by its first vertex, that is seen at the largest angle, if more than a right one: its weight dominates,
-    /// and is factored out.
-    pub near_edge: Option<usize>,
-    /// The nearest vertex but `v`, if it is by far: its distance is factored out as well.
-    pub near_vertex: Option<usize>,
-    /// How near the nearest vertex is.
+    /// How near the nearest vertex but the apex is.
     pub nearest: f64,
 }
 
 impl Guide {
     /// No help.
-    pub const NONE: Self = Self {
-        linear: [[1.0, 0.0], [0.0, 1.0]],
-        shift: [0.0; 2],
-        is_off_apex: false,
-        near_edge: None,
-        near_vertex: None,
-        nearest: 1.0,
-    };
+    pub const NONE: Self = Self { linear: [[1.0, 0.0], [0.0, 1.0]], shift: [0.0; 2], nearest: 1.0 };
 }
 
-impl Frame<'_, Ball> {
-    /// A guide for a box of the chart.
-    pub fn guide(&self, s_ball: Ball, lambda_ball: Ball) -> Guide {
-        let (s, lambda) = (s_ball.middle, lambda_ball.middle);
-        let is_off_apex = s_ball.radius < OFF_APEX * s && self.axes_turned(lambda_ball) < OFF_APEX;
+impl Frame<'_, Form> {
+    /// A guide for a box round a point of the chart: least squares, weighted by the inverse fourth power of distances.
+    pub fn guide(&self, s: f64, lambda: f64) -> Guide {
         let axis = |axis: usize, k: usize| self.axes[axis][k].middle;
         let at: Point2 = std::array::from_fn(|k| s * (axis(0, k) + lambda * axis(1, k)));
-        let there = |i: usize| -> Point2 { std::array::from_fn(|k| self.offsets[i][0][k].middle - at[k]) };
-        let (linear, shift, near_vertex, nearest) = self.fit(at, is_off_apex);
-        let mut near = (0.0, None);
-        for i in 0..self.offsets.len() {
-            let k = self.step.next[i] as usize;
-            let (a, b) = (there(i), there(k));
-            let product = dot(a, b);
-            if product < 0.0 {
-                let square = product * product / (dot(a, a) * dot(b, b));
-                let is_touched = match self.chart.touch {
-                    Touch::Nothing => false,
-                    touch => self.edge_at_vertex(touch) == i,
-                };
-                if square > near.0 && (is_off_apex || !is_touched) {
-                    near = (square, Some(i));
-                }
-            }
-        }
-        Guide { linear, shift, is_off_apex, near_edge: near.1, near_vertex, nearest }
-    }
-
-    /// How far `e` is from its middle, in lengths of it.
-    fn axes_turned(&self, lambda: Ball) -> f64 {
-        let [from, across] = self.axes.map(|axis| axis.map(|c| c.middle));
-        let length = (from[0] + lambda.middle * across[0]).hypot(from[1] + lambda.middle * across[1]);
-        across[0].hypot(across[1]) * lambda.radius / length
-    }
-
-    /// A linear map that takes vertices near a point close to their images, what it is shifted by, and which vertex but `v`
-    /// is nearest, and how near. Least squares, weighted by the inverse fourth power of distances.
-    fn fit(&self, at: Point2, is_off_apex: bool) -> (Linear, Point2, Option<usize>, f64) {
-        let v = (!is_off_apex).then_some(self.chart.corners[0] as usize);
-        let (mut nearest, mut second) = ((f64::INFINITY, None), f64::INFINITY);
+        let apex = self.apex();
+        let mut nearest = f64::INFINITY;
         let mut moments = Moments::default();
         for (i, &[offset, image]) in self.offsets.iter().enumerate() {
-            if v == Some(i) {
+            if apex == Some(i) {
                 continue;
             }
             let (offset, image) = (offset.map(|c| c.middle), image.map(|c| c.middle));
             let (x, y) = (offset[0] - at[0], offset[1] - at[1]);
             let square = x * x + y * y;
-            second = second.min(square.max(nearest.0));
-            if square < nearest.0 {
-                nearest = (square, Some(i));
-            }
+            nearest = nearest.min(square);
             moments.add(1.0 / (square * square), offset, image);
         }
-        let (linear, shift) = moments.solve(is_off_apex || !self.step.is_vertex(self.chart.corners[0]));
-        (linear, shift, nearest.1.filter(|_| nearest.0 < MUCH_NEARER * second), nearest.0.sqrt())
+        let (linear, shift) = moments.solve(apex.is_none());
+        Guide { linear, shift, nearest: nearest.sqrt() }
     }
 }
 

@@ -9,8 +9,8 @@ use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::{Sign, orient2d};
 
 use super::chart::Step;
-use super::evaluate::BallPoint;
-use super::number::{Ball, Number};
+use super::evaluate::Region;
+use super::number::{Form, Number};
 use crate::map::Enclosed2;
 
 /// Why a preimage is not proved to be near.
@@ -35,15 +35,15 @@ pub(super) fn invert(
     image: Enclosed2,
 ) -> Result<Enclosed2, InverseError> {
     let point = newton(step, backward, source, image.point).ok_or(InverseError::NotFound)?;
-    let there = step.enclose(point.map(Ball::of));
-    let wanted = image.point.map(|c| Ball { middle: c, radius: image.radius });
-    let both: BallPoint = std::array::from_fn(|k| there[k].hull(wanted[k]));
-    if both.iter().any(|c| c.radius.is_nan()) {
+    let there = step.enclose(point.map(Form::of));
+    let wanted = image.point.map(|c| Form::within(image.radius, c));
+    let both: Region = std::array::from_fn(|k| there[k].hull(wanted[k]));
+    if both.iter().any(|c| c.radius().is_nan()) {
         return Err(InverseError::NotBounded);
     }
-    let diameter = 2.0 * both[0].radius.hypot(both[1].radius) * (1.0 + 1e-12);
+    let diameter = 2.0 * both[0].radius().hypot(both[1].radius()) * (1.0 + 1e-12);
     let path = if meeting_edges(target, both).ok_or(InverseError::Crowded)? < 2 { diameter } else { 2.0 * diameter };
-    let box_of = |radius: f64| point.map(|c| Ball { middle: c, radius });
+    let box_of = |radius: f64| point.map(|c| Form::within(radius, c));
     // The rate in the box must hold what made the box; a few attempts.
     let mut rate = 2.0;
     for _ in 0..40 {
@@ -59,8 +59,8 @@ pub(super) fn invert(
 
 /// How many edges of a domain a box may meet, if it is so few that its part of the domain is connected by paths of twice
 /// its diameter: none or one, when the part is convex, or two at a vertex in the box, which is seen from everywhere in it.
-pub(crate) fn meeting_edges(domain: &PlanarDomain, at: [Ball; 2]) -> Option<usize> {
-    let [low, high]: [Point2; 2] = [at.map(Ball::low), at.map(Ball::high)];
+pub(crate) fn meeting_edges(domain: &PlanarDomain, at: [Form; 2]) -> Option<usize> {
+    let [low, high]: [Point2; 2] = [at.map(Form::low), at.map(Form::high)];
     let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
     let meets = |[p, q]: &[Point2; 2]| {
         let is_apart = (0..2).any(|k| p[k].max(q[k]) < low[k] || p[k].min(q[k]) > high[k]);

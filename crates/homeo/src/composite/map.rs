@@ -5,9 +5,9 @@ use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::{Sign, orient2d};
 
 use super::chart::Step;
-use super::evaluate::{BallPoint, Jacobian};
+use super::evaluate::{Region, Jacobian};
 use super::invert::{InverseError, invert};
-use super::number::{Ball, Number};
+use super::number::{Form, Number};
 use super::partition::{Partition, PartitionError, PartitionParams, Stage, binary_partition, given_partition};
 use super::track::{self, Track};
 use super::triangulation::{Tiling, TriangulationError, check_tiling, triangulate};
@@ -212,10 +212,10 @@ impl CompositeMap {
         if let Some(image) = along_edge(self.source(), self.target(), point) {
             return Ok(image);
         }
-        let mut here: BallPoint = point.map(Ball::of);
+        let mut here: Region = point.map(Form::of);
         for (number, step) in self.steps.iter().enumerate() {
             here = step.enclose(here);
-            if here.iter().any(|c| c.radius.is_nan()) {
+            if here.iter().any(|c| c.radius().is_nan()) {
                 return Err(CompositeError::TooWide(number));
             }
         }
@@ -313,8 +313,8 @@ impl From<CompositeError> for PlanarEvaluationError {
     }
 }
 
-fn enclosed(point: BallPoint) -> Enclosed2 {
-    Enclosed2 { point: point.map(|c| c.middle), radius: point[0].radius.max(point[1].radius) }
+fn enclosed(point: Region) -> Enclosed2 {
+    Enclosed2 { point: point.map(|c| c.middle), radius: point[0].radius().max(point[1].radius()) }
 }
 
 /// Where a point on an edge of one domain lies on the same edge of another; `None` off all edges.

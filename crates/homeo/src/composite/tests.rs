@@ -5,7 +5,7 @@ use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 use super::chart::{Part, Step};
 use super::frame::{Frame, Local};
 use super::guide::Guide;
-use super::number::Ball;
+use super::number::Form;
 use super::{
     CompositeMap, JacobianLimits, JacobianVerdict, PartitionError, PartitionParams, Tiling, TriangulationError,
     check_tiling, triangulate,
@@ -77,7 +77,7 @@ fn by_definition(step: &Step, x: Point2) -> Point2 {
     std::array::from_fn(|k| weights.iter().zip(&step.images).map(|(w, image)| w * image[k]).sum::<f64>() / total)
 }
 
-fn holds(ball: Ball, value: f64) -> bool {
+fn holds(ball: Form, value: f64) -> bool {
     let slack = 1e-10 * value.abs().max(1.0);
     ball.low() <= value + slack && value - slack <= ball.high()
 }
@@ -120,7 +120,7 @@ fn enclosures_hold_values_up_to_vertices_and_edges() {
     let mut known = 0;
     for step in examples() {
         for chart in &step.charts {
-            let mut boxes = Frame::<Ball>::new(&step, chart);
+            let mut boxes = Frame::<Form>::new(&step, chart);
             let mut points = Frame::<f64>::new(&step, chart);
             for round in 0..60 {
                 let side = |x: f64, width: f64| [x * (1.0 - width), x * (1.0 - width) + width];
@@ -128,14 +128,14 @@ fn enclosures_hold_values_up_to_vertices_and_edges() {
                 // Every third box at the vertex, every fifth at λ = 0.
                 let at = [if round % 3 == 0 { 0.0 } else { next() }, if round % 5 == 0 { 0.0 } else { next() }];
                 let [s, lambda] = [side(at[0], width), side(at[1], width)];
-                let sides = [s, lambda].map(|[low, high]| Ball::between(low, high));
-                let guide = boxes.guide(sides[0], sides[1]);
+                let sides = [0, 1].map(|axis| Form::between([s, lambda][axis][0], [s, lambda][axis][1]).along(axis));
+                let guide = boxes.guide(sides[0].middle, sides[1].middle);
                 let around = boxes.evaluate(sides[0], sides[1], &guide);
                 let inside = |[low, high]: [f64; 2], part: f64| low + part * (high - low);
                 for part in [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [next(), next()]] {
                     let Local { image, determinant, .. } =
                         points.evaluate(inside(s, part[0]), inside(lambda, part[1]), &Guide::NONE);
-                    if !around.determinant.radius.is_nan() {
+                    if !around.determinant.radius().is_nan() {
                         known += 1;
                         assert!(
                             holds(around.determinant, determinant),

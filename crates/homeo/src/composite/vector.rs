@@ -26,11 +26,6 @@ pub(super) fn scaled<T: Number>(factor: T, a: Vector<T>) -> Vector<T> {
     [factor * a[0], factor * a[1]]
 }
 
-/// The product of complex numbers.
-pub(super) fn times<T: Number>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
-    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
-}
-
 pub(super) fn opposite<T: Number>(a: Vector<T>) -> Vector<T> {
     a.map(T::opposite)
 }

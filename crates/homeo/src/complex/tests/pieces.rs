@@ -7,11 +7,11 @@ use super::{Random, pairs};
 use crate::complex::chart::Cover;
 use crate::complex::frame::{Chart, Frame, Outline};
 use crate::complex::guide::Guide;
-use crate::composite::number::Ball;
+use crate::composite::number::Form;
 
 /// Whether a ball with its radius times `factor` holds a number, but for rounding of the number itself.
-fn holds(ball: Ball, value: f64, factor: f64, slack: f64) -> bool {
-    (ball.middle - value).abs() <= ball.radius * factor + slack
+fn holds(ball: Form, value: f64, factor: f64, slack: f64) -> bool {
+    (ball.middle - value).abs() <= ball.radius() * factor + slack
 }
 
 #[test]
@@ -22,7 +22,7 @@ fn enclosures_hold_samples() {
         let outline = Outline::new(&pair.source, &pair.target);
         let speeds = random.speeds(outline.count(), 4);
         let cover = Cover::new(&outline, &pair.source);
-        let mut wide = Frame::<Ball>::new(&outline, &speeds);
+        let mut wide = Frame::<Form>::new(&outline, &speeds);
         let mut exact = Frame::<f64>::new(&outline, &speeds);
         for piece in &cover.pieces {
             for size in [0.2, 0.02, 1e-3] {
@@ -35,8 +35,8 @@ fn enclosures_hold_samples() {
                 let middle = sides.map(|[a, b]| 0.5 * (a + b));
                 let point = piece.place(&outline, middle);
                 let guide = Guide::at(&outline, point, piece.vertex(), piece.direction(middle[1]));
-                let found = wide.evaluate(&piece.chart, sides.map(|[a, b]| Ball::between(a, b)), &guide);
-                if !found.determinant().radius.is_finite() {
+                let found = wide.evaluate(&piece.chart, [0, 1].map(|k| Form::between(sides[k][0], sides[k][1]).along(k)), &guide);
+                if !found.determinant().radius().is_finite() {
                     continue;
                 }
                 known += 1;
