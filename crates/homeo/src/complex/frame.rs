@@ -1,4 +1,4 @@
-//! The formulas of the map in a chart: value and both derivatives, in doubles or in balls.
+//! The formulas of the map in a chart: value and both derivatives, in doubles or in affine forms.
 
 use homeo_core::planar::{PlanarDomain, Point2};
 

@@ -6,7 +6,7 @@
 //!              Hormann, Floater 2006 for domains with holes.
 //! Differences: the least determinant is maximized, and proved to be positive up to vertices and edges, where the source
 //!              samples it; speeds that are mirrored need no search; domains may be of any shape.
-//! Arithmetic:  domains are decided exactly; the determinant is bounded in balls, rounded outwards; the search for speeds is
+//! Arithmetic:  domains are decided exactly; the determinant is bounded in affine forms, rounded outwards; the search for speeds is
 //!              rounded and decides nothing.
 //! Cost:        samples times vertices squared for the search, boxes times vertices for the proof.
 //! Fails when:  no speeds of the degree are found that make it positive, or the proof reaches its limit -> [`ComplexError`].

@@ -67,7 +67,7 @@ impl EdgeSpeeds {
         t + t * (1.0 - t) * horner(&self.quotient::<f64>(edge), t)
     }
 
-    /// The same for all numbers of a ball.
+    /// The same for all numbers of a form.
     pub(super) fn enclose(&self, edge: usize, t: Form) -> Form {
         t + t * (Form::of(1.0) - t) * horner(&self.quotient::<Form>(edge), t)
     }

@@ -199,8 +199,8 @@ impl<'a, T: Number> Frame<'a, T> {
             let [x, y] = self.residual(i, guide);
             for k in 0..3 {
                 sums[0][k] = sums[0][k] + weight[k];
-                sums[1][k] = sums[1][k] + weight[k] * x;
-                sums[2][k] = sums[2][k] + weight[k] * y;
+                sums[1][k] = sums[1][k] + weight[k].times_constant(x);
+                sums[2][k] = sums[2][k] + weight[k].times_constant(y);
             }
         }
         sums

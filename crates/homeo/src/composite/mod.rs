@@ -6,7 +6,7 @@
 //!              coordinates of domains with holes.
 //! Differences: the determinant is proved to be positive up to vertices and edges, where the source samples it; nothing is
 //!              asked at vertices; domains may have holes; the inverse is the exact one, enclosed.
-//! Arithmetic:  domains and triangles are decided exactly; the determinant is bounded in balls, rounded outwards; what
+//! Arithmetic:  domains and triangles are decided exactly; the determinant is bounded in affine forms, rounded outwards; what
 //!              guides the search is rounded and decides nothing.
 //! Cost:        for each step boxes times vertices; boxes are hundreds for each vertex.
 //! Fails when:  an intermediate polygon is not simple, or a step is not proved within its limits -> [`PartitionError`].

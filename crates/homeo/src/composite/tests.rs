@@ -77,9 +77,9 @@ fn by_definition(step: &Step, x: Point2) -> Point2 {
     std::array::from_fn(|k| weights.iter().zip(&step.images).map(|(w, image)| w * image[k]).sum::<f64>() / total)
 }
 
-fn holds(ball: Form, value: f64) -> bool {
+fn holds(form: Form, value: f64) -> bool {
     let slack = 1e-10 * value.abs().max(1.0);
-    ball.low() <= value + slack && value - slack <= ball.high()
+    form.low() <= value + slack && value - slack <= form.high()
 }
 
 #[test]

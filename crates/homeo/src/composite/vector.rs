@@ -47,7 +47,7 @@ impl<T: Number> Dual<T> {
         Self([a * b, a1 * b + a * b1, a2 * b + a * b2])
     }
     pub fn times_constant(self, factor: T) -> Self {
-        Self(self.0.map(|c| c * factor))
+        Self(self.0.map(|c| c.times_constant(factor)))
     }
     pub fn with(self, factor: Option<Self>) -> Self {
         factor.map_or(self, |factor| self.times(factor))

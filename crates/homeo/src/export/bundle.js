@@ -1,15 +1,7 @@
 // The picture of a bundle: the surface with its cuts on the left, the solid tori over its disks on the right.
 "use strict";
 (() => {
-  const scene = JSON.parse(document.getElementById("homeo-scene").textContent);
-  const text = atob(document.getElementById("homeo-arrays").textContent);
-  const bytes = Uint8Array.from(text, (character) => character.charCodeAt(0));
-  const kinds = { u8: Uint8Array, u16: Uint16Array, u32: Uint32Array };
-  const array = (slot) => new kinds[slot.kind](bytes.buffer, slot.offset, slot.length);
-  const points = (slot, frame) => Float32Array.from(array(slot), (step, at) => {
-    const low = frame.low[at % 3], high = frame.high[at % 3];
-    return low + (step / 65535) * (high - low);
-  });
+  const { scene, array, points, turnable } = page;
   const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -98,15 +90,9 @@
     gl.linkProgram(made);
     gl.useProgram(made);
     const place = (name) => gl.getUniformLocation(made, name);
-    let turn = [1, 0, 0, 0, 1, 0, 0, 0, 1], zoom = 1, batches = [], marks = [];
-    function rotate(across, down) {
-      const [a, b, c, d] = [Math.cos(across), Math.sin(across), Math.cos(down), Math.sin(down)];
-      const by = [a, b * d, -b * c, 0, c, d, b, -a * d, a * c];
-      turn = turn.map((_, at) => [0, 1, 2].reduce((sum, k) => sum + by[3 * k + (at % 3)] * turn[3 * ((at / 3) | 0) + k], 0));
-    }
-    rotate(...tilt);
+    let batches = [], marks = [], click = () => {};
     const seen = (p) => {
-      const q = [0, 1, 2].map((k) => zoom * (turn[k] * p[0] + turn[k + 3] * p[1] + turn[k + 6] * p[2]));
+      const q = [0, 1, 2].map((k) => view.zoom * (view.turn[k] * p[0] + view.turn[k + 3] * p[1] + view.turn[k + 6] * p[2]));
       const short = Math.min(canvas.clientWidth, canvas.clientHeight), far = 4.2 - q[2];
       return [canvas.clientWidth / 2 + (q[0] * 1.45 * short) / far, canvas.clientHeight / 2 - (q[1] * 1.45 * short) / far, far];
     };
@@ -121,8 +107,8 @@
       gl.enable(gl.DEPTH_TEST);
       gl.enable(gl.BLEND);
       gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-      gl.uniformMatrix3fv(place("turn"), false, turn);
-      gl.uniform1f(place("zoom"), zoom);
+      gl.uniformMatrix3fv(place("turn"), false, view.turn);
+      gl.uniform1f(place("zoom"), view.zoom);
       gl.uniform2f(place("aspect"), short / canvas.width, short / canvas.height);
       for (const batch of batches) {
         gl.uniform1f(place("lift"), batch.lift);
@@ -160,27 +146,7 @@
       });
       draw();
     }
-    let held = null, moved = 0, click = () => {};
-    canvas.addEventListener("pointerdown", (event) => { held = [event.clientX, event.clientY]; moved = 0; canvas.setPointerCapture(event.pointerId); });
-    canvas.addEventListener("pointerup", (event) => { held = null; if (moved < 4) click(event.offsetX, event.offsetY); });
-    canvas.addEventListener("pointermove", (event) => {
-      if (!held) return;
-      moved += Math.abs(event.clientX - held[0]) + Math.abs(event.clientY - held[1]);
-      rotate((event.clientX - held[0]) * 0.008, (event.clientY - held[1]) * 0.008);
-      held = [event.clientX, event.clientY];
-      draw();
-    });
-    const nearer = (factor) => { zoom = Math.min(8, Math.max(0.3, zoom * factor)); draw(); };
-    canvas.addEventListener("wheel", (event) => { event.preventDefault(); nearer(Math.exp(-event.deltaY * 0.001)); }, { passive: false });
-    canvas.addEventListener("keydown", (event) => {
-      const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
-      if (turns[event.key]) rotate(...turns[event.key]);
-      else if (event.key === "+" || event.key === "=") nearer(1.1);
-      else if (event.key === "-") nearer(1 / 1.1);
-      else return;
-      event.preventDefault();
-      draw();
-    });
+    const view = turnable(canvas, tilt, 8, draw, (x, y) => click(x, y));
     new ResizeObserver(draw).observe(host);
     return { fill, draw, seen, onClick: (given) => (click = given) };
   }

@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::io::{self, Write};
 
 /// The viewer, written by hand.
-const VIEWER: &str = include_str!("bundle.js");
+const VIEWER: &str = concat!(include_str!("page.js"), include_str!("bundle.js"));
 /// Paths beyond this are not drawn.
 const MOST_PATHS: usize = 60_000;
 const CAPTION: &str = "Left the surface with the paths along which it is cut; right the bundle over each disk that is left: a solid torus, disk times circle, cut open at level 0 when it is unrolled. A path has the same colour on the surface and on the tori, where both its sides are seen. Click on a triangle: the circle round it is the fibre over its middle, all unit tangent vectors there, and the same fibre is drawn in its solid torus. Drag to turn, scroll to come nearer.";

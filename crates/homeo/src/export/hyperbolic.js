@@ -1,16 +1,9 @@
 // The picture of a fundamental domain: truncated tetrahedra in the unit ball, to be turned and pulled apart.
 "use strict";
 (() => {
-  const scene = JSON.parse(document.getElementById("homeo-scene").textContent);
-  const text = atob(document.getElementById("homeo-arrays").textContent);
-  const bytes = Uint8Array.from(text, (character) => character.charCodeAt(0));
+  const { scene, array, turnable } = page;
+  const points = (slot) => page.points(slot, scene.frame);
   const viewer = document.getElementById("viewer");
-  const kinds = { u8: Uint8Array, u16: Uint16Array, u32: Uint32Array };
-  const array = (slot) => new kinds[slot.kind](bytes.buffer, slot.offset, slot.length);
-  const points = (slot) => Float32Array.from(array(slot), (step, at) => {
-    const low = scene.frame.low[at % 3], high = scene.frame.high[at % 3];
-    return low + (step / 65535) * (high - low);
-  });
 
   const canvas = document.createElement("canvas");
   const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
@@ -129,15 +122,6 @@
   }
   const sphere = attributes(strokes, [["point", 3, new Float32Array(circle)], ["middle", 3, new Float32Array(circle.length)]]);
 
-  // Turning: columns of a rotation matrix.
-  let turn = [1, 0, 0, 0, 1, 0, 0, 0, 1], zoom = 1;
-  function rotate(across, down) {
-    const [a, b, c, d] = [Math.cos(across), Math.sin(across), Math.cos(down), Math.sin(down)];
-    const by = [a, b * d, -b * c, 0, c, d, b, -a * d, a * c];
-    turn = turn.map((_, at) => [0, 1, 2].reduce((sum, k) => sum + by[3 * k + (at % 3)] * turn[3 * ((at / 3) | 0) + k], 0));
-  }
-  rotate(-0.5, 0.45);
-
   function draw() {
     const scale = window.devicePixelRatio || 1;
     canvas.width = Math.max(1, canvas.clientWidth * scale);
@@ -151,9 +135,9 @@
     const start = (made, explode) => {
       gl.useProgram(made);
       const at = (name) => gl.getUniformLocation(made, name);
-      gl.uniformMatrix3fv(at("turn"), false, turn);
+      gl.uniformMatrix3fv(at("turn"), false, view.turn);
       gl.uniform1f(at("explode"), explode);
-      gl.uniform1f(at("zoom"), zoom);
+      gl.uniform1f(at("zoom"), view.zoom);
       gl.uniform2f(at("aspect"), short / canvas.width, short / canvas.height);
       return at;
     };
@@ -174,26 +158,7 @@
     }
   }
 
-  let held = null;
-  canvas.addEventListener("pointerdown", (event) => { held = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
-  canvas.addEventListener("pointerup", () => (held = null));
-  canvas.addEventListener("pointermove", (event) => {
-    if (!held) return;
-    rotate((event.clientX - held[0]) * 0.008, (event.clientY - held[1]) * 0.008);
-    held = [event.clientX, event.clientY];
-    draw();
-  });
-  const nearer = (factor) => { zoom = Math.min(3, Math.max(0.3, zoom * factor)); draw(); };
-  canvas.addEventListener("wheel", (event) => { event.preventDefault(); nearer(Math.exp(-event.deltaY * 0.001)); }, { passive: false });
-  canvas.addEventListener("keydown", (event) => {
-    const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
-    if (turns[event.key]) rotate(...turns[event.key]);
-    else if (event.key === "+" || event.key === "=") nearer(1.1);
-    else if (event.key === "-") nearer(1 / 1.1);
-    else return;
-    event.preventDefault();
-    draw();
-  });
+  const view = turnable(canvas, [-0.5, 0.45], 3, draw);
   new ResizeObserver(draw).observe(stage);
   draw();
 })();

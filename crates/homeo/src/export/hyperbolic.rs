@@ -14,7 +14,7 @@ use serde_json::json;
 use std::io::{self, Write};
 
 /// The viewer, written by hand: it draws triangles and nothing else.
-const VIEWER: &str = include_str!("hyperbolic.js");
+const VIEWER: &str = concat!(include_str!("page.js"), include_str!("hyperbolic.js"));
 const CAPTION: &str = "The truncated tetrahedra of a fundamental domain in the unit ball, Poincaré's model: angles are true, lengths are not, and geodesic planes are parts of spheres that meet the unit sphere at right angles. Pale triangles are on the geodesic boundary of the manifold; hexagons of the same colour are glued by a side pairing, grey ones inside of the domain. Drag to turn, scroll to come nearer.";
 /// A depth is drawn if there are no more pieces than this.
 const MOST_PIECES: usize = 700;

@@ -9,9 +9,9 @@ use crate::complex::frame::{Chart, Frame, Outline};
 use crate::complex::guide::Guide;
 use crate::composite::number::Form;
 
-/// Whether a ball with its radius times `factor` holds a number, but for rounding of the number itself.
-fn holds(ball: Form, value: f64, factor: f64, slack: f64) -> bool {
-    (ball.middle - value).abs() <= ball.radius() * factor + slack
+/// Whether a form with its radius times `factor` holds a number, but for rounding of the number itself.
+fn holds(form: Form, value: f64, factor: f64, slack: f64) -> bool {
+    (form.middle - value).abs() <= form.radius() * factor + slack
 }
 
 #[test]
@@ -49,16 +49,16 @@ fn enclosures_hold_samples() {
                         (found.along[1][0], sample.along[1][0]),
                         (found.determinant(), sample.determinant()),
                     ];
-                    for (ball, value) in pairs {
-                        assert!(holds(ball, value, 1.0, 1e-10 * (1.0 + value.abs())), "{name} {at:?} {ball:?} {value}");
-                        missed += usize::from(!holds(ball, value, 0.05, 0.0));
+                    for (form, value) in pairs {
+                        assert!(holds(form, value, 1.0, 1e-10 * (1.0 + value.abs())), "{name} {at:?} {form:?} {value}");
+                        missed += usize::from(!holds(form, value, 0.05, 0.0));
                     }
                 }
             }
         }
     }
     assert!(known > 800, "{known} boxes have enclosures");
-    assert!(missed > 100, "balls a twentieth as large miss samples: {missed}");
+    assert!(missed > 100, "forms a twentieth as large miss samples: {missed}");
 }
 
 /// Within its disk a vertex's corner is in the triangles; in one that is too large it is not.

@@ -205,6 +205,14 @@ impl Number for Form {
         Self::new(middle, slopes, self.radius * factor.abs(), middle.abs() + slopes[0].abs() + slopes[1].abs())
     }
     #[inline(always)]
+    fn times_constant(self, constant: Self) -> Self {
+        debug_assert!(constant.varied() == 0.0, "{constant:?} is no constant");
+        let factor = constant.middle;
+        let size = self.middle.abs() + self.varied();
+        let radius = self.radius * factor.abs() + (size + self.radius) * constant.radius;
+        Self::new(self.middle * factor, self.slopes.map(|a| a * factor), radius, size * factor.abs())
+    }
+    #[inline(always)]
     fn opposite(self) -> Self {
         Self { middle: -self.middle, slopes: self.slopes.map(|a| -a), radius: self.radius }
     }

@@ -16,6 +16,8 @@ pub(crate) trait Number:
     fn of_form(value: Form) -> Self;
     /// The product with a stored number.
     fn by(self, factor: f64) -> Self;
+    /// The product with a number that does not depend on where in the box the point is.
+    fn times_constant(self, constant: Self) -> Self;
     /// Its opposite.
     fn opposite(self) -> Self;
     /// Length of a vector.
@@ -103,6 +105,9 @@ impl Number for f64 {
     }
     fn by(self, factor: f64) -> Self {
         self * factor
+    }
+    fn times_constant(self, constant: Self) -> Self {
+        self * constant
     }
     fn opposite(self) -> Self {
         -self

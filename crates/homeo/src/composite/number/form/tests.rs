@@ -85,6 +85,9 @@ fn operations_hold_exact_results() {
             count.see("product", f * g, at, &(&a * &b));
             count.see("square", f * f, at, &(&a * &a));
             count.see("multiple", f.by(factor), at, &(&a * &exact(factor)));
+            let constant = g.range();
+            let of_constant = sample(constant, at, errors[1]);
+            count.see("multiple by a range", f.times_constant(constant), at, &(&a * &of_constant));
             if !b.is_zero() {
                 quotients.see("quotient", f / g, at, &(&a / &b));
             }
