@@ -13,7 +13,7 @@ use zip::{CompressionMethod, ZipArchive};
 use super::npy::decode;
 use super::{FoliationMap, StoredMap};
 use crate::complex::{ComplexMap, EdgeSpeeds};
-use crate::composite::{CompositeMap, Tiling, check_tiling};
+use crate::composite::{CompositeMap, Tiling};
 use crate::input::SourceMesh;
 use crate::map::{
     BoundaryPoint, Centre, Foliation, FoliationParts, HalfParts, HarmonicMap, Middle, SHARE_BITS, Section, Shell,
@@ -239,10 +239,8 @@ impl<'b> File<'b> {
         let [source, target] = domains;
         let pair = DomainPair { source: source?, target: target? };
         let speeds = self.speeds()?;
-        // Evaluation needs no tiling; a file whose tiling is none is no map file all the same.
         let tiling = Tiling { added: self.points_2d("added_points")?, triangles: self.rows::<u32, 3>("triangles")? };
-        check_tiling(&pair.source, &tiling).map_err(|e| MapFileError::Inconsistent(format!("the tiling: {e}")))?;
-        ComplexMap::from_speeds(&pair, speeds).map_err(|e| MapFileError::Inconsistent(e.to_string()))
+        ComplexMap::from_parts(&pair, tiling, speeds).map_err(|e| MapFileError::Inconsistent(e.to_string()))
     }
 
     /// Speeds of whatever degree.

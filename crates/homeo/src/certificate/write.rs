@@ -14,7 +14,7 @@ use zip::{CompressionMethod, ZipWriter};
 use super::npy::{Element, encode};
 use super::{FoliationMap, PlanarMap, Provenance, either};
 use crate::complex::ComplexMap;
-use crate::composite::{CompositeMap, triangulate};
+use crate::composite::CompositeMap;
 use crate::input::SourceMesh;
 use crate::map::{Bijection, Centre, Foliation, HarmonicMap, PlanarBijection, Section, Shell};
 
@@ -94,11 +94,10 @@ fn target_name(source: &PlanarDomain) -> &'static str {
     }
 }
 
-/// Writes a complex map with speeds, with what its certificate needs: a tiling of the source, which is made here. The same
-/// map gives the same bytes.
+/// Writes a complex map with speeds, with what its certificate needs. The same map gives the same bytes.
 ///
 /// # Errors
-/// When `out` cannot be written, and when the source cannot be [tiled](triangulate).
+/// When `out` cannot be written.
 ///
 /// # Example
 /// ```
@@ -118,7 +117,7 @@ fn target_name(source: &PlanarDomain) -> &'static str {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn write_complex(map: &ComplexMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
-    let tiling = triangulate(map.source()).map_err(io::Error::other)?;
+    let tiling = map.tiling();
     let kind = ["complex-barycentric", target_name(map.source())];
     let mut archive = Archive::begin_planar(map.source(), kind, provenance, out)?;
     archive.points("target_points", &map.target().vertices().collect::<Vec<_>>())?;

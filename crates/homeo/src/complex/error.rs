@@ -2,6 +2,8 @@
 
 use homeo_core::planar::Point2;
 
+use crate::composite::TriangulationError;
+
 /// Why control values make no speeds.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SpeedError {
@@ -43,13 +45,16 @@ pub enum ComplexError {
     /// Speeds are none, or do not fit the domain.
     #[error(transparent)]
     Speeds(#[from] SpeedError),
+    /// The source was not cut into triangles.
+    #[error(transparent)]
+    Triangles(#[from] TriangulationError),
     /// The map of the best speeds that were found folds.
     #[error(
         "the map of the best speeds found folds at {point:?}: its determinant is {at_most:e} at most. Take a higher degree, \
          or a composite mean value map, which goes in several steps"
     )]
     Folds {
-        /// A point of the closed source where that is proved.
+        /// A point of the source where that is proved.
         point: Point2,
         /// A negative number.
         at_most: f64,

@@ -8,7 +8,7 @@ use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::{Sign, orient2d};
 
 use super::map::ComplexMap;
-use crate::composite::invert::meeting_edges;
+use crate::composite::invert::prove_near;
 use crate::composite::number::{Form, Number};
 use crate::map::Enclosed2;
 
@@ -31,14 +31,17 @@ pub(super) fn starts(map: &ComplexMap) -> Vec<Start> {
     let step = (high[0] - low[0]).max(high[1] - low[1]) / GRID as f64;
     let grid = (0..=GRID).flat_map(|x| (0..=GRID).map(move |y| [x, y]));
     let on_grid = grid.map(|at| [0, 1].map(|k| low[k] + (at[k] as f64 + 0.437) * step));
-    let vertices = &map.outline().vertices;
+    let vertices = &map.step().points;
     let beside = (0..vertices.len()).flat_map(|i| {
-        let (v, outline) = (vertices[i], map.outline());
-        let [p, q] = [outline.previous[i], outline.next[i]].map(|j| vertices[j]);
+        let (v, step) = (vertices[i], map.step());
+        let [p, q] = [step.previous[i], step.next[i]].map(|j| vertices[j as usize]);
         [0.01, 0.1, -0.01, -0.1].map(|t| [0, 1].map(|k| v[k] + t * (p[k] + q[k] - 2.0 * v[k])))
     });
     let inside = on_grid.chain(beside).filter(|&point| domain.contains(point));
-    inside.map(|point| Start { point, image: map.near(point).0 }).filter(|s| size(s.image).is_finite()).collect()
+    inside
+        .map(|point| Start { point, image: map.step().value(point).0 })
+        .filter(|s| size(s.image).is_finite())
+        .collect()
 }
 
 /// The edge that a point lies on, exactly, and how far along it is; `None` off all edges.
@@ -55,8 +58,8 @@ fn edge_of(domain: &PlanarDomain, point: Point2) -> Option<(usize, Rational)> {
 /// The image of a point on an edge.
 pub(super) fn along_edge(map: &ComplexMap, point: Point2) -> Option<Enclosed2> {
     let (edge, share) = edge_of(crate::map::PlanarBijection::source(map), point)?;
-    let outline = map.outline();
-    let ends = [edge, outline.next[edge]].map(|i| outline.images[i]);
+    let step = map.step();
+    let ends = [edge, step.next[edge] as usize].map(|i| step.images[i]);
     Some(between(ends, &share, map.speeds().enclose(edge, Form::around(&share))))
 }
 
@@ -70,8 +73,8 @@ pub(super) fn back_along_edge(map: &ComplexMap, point: Point2) -> Option<Enclose
     };
     let low = bisect(|t| certain(t).0, [0.0, 1.0]);
     let high = bisect(|t| certain(t).1, [1.0, 0.0]);
-    let outline = map.outline();
-    let ends = [edge, outline.next[edge]].map(|i| outline.vertices[i]);
+    let step = map.step();
+    let ends = [edge, step.next[edge] as usize].map(|i| step.points[i]);
     Some(between(ends, &share, Form::between(low, high)))
 }
 
@@ -104,29 +107,8 @@ fn between([a, b]: [Point2; 2], share: &Rational, part: Form) -> Enclosed2 {
 
 /// The preimage of a point off the edges of the target.
 pub(super) fn invert(map: &ComplexMap, image: Point2) -> Option<Enclosed2> {
-    let point = search(map, image)?;
-    let there = map.enclose(point);
-    let both: [Form; 2] = std::array::from_fn(|k| there[k].hull(Form::of(image[k])));
-    if both.iter().any(|c| !c.radius().is_finite()) {
-        return None;
-    }
-    let diameter = 2.0 * both[0].radius().hypot(both[1].radius()) * (1.0 + 1e-12);
     let target = crate::map::PlanarBijection::target(map);
-    let path = if meeting_edges(target, both)? < 2 { diameter } else { 2.0 * diameter };
-    // The rate in the box must hold what made the box; a few attempts.
-    let mut rate = 2.0;
-    for _ in 0..40 {
-        let radius = 1.5 * rate * path;
-        let here = map.inverse_rate(point, radius);
-        if here.is_nan() {
-            return None;
-        }
-        if here * path * (1.0 + 1e-12) < radius {
-            return Some(Enclosed2 { point, radius: here * path * (1.0 + 1e-12) });
-        }
-        rate = here.max(2.0 * rate);
-    }
-    None
+    prove_near(map.step(), target, search(map, image)?, Enclosed2 { point: image, radius: 0.0 }).ok()
 }
 
 /// A point of the source whose image is as near as rounding allows, from the nearest starts.
@@ -160,13 +142,12 @@ fn search(map: &ComplexMap, image: Point2) -> Option<Point2> {
 fn newton(map: &ComplexMap, mut at: Point2, image: Point2) -> (f64, Point2) {
     let source = crate::map::PlanarBijection::source(map);
     let miss_at = |at: Point2| {
-        let (there, derivative) = map.near(at);
+        let (there, derivative) = map.step().value(at);
         ([image[0] - there[0], image[1] - there[1]], derivative)
     };
     let (mut miss, mut derivative) = miss_at(at);
     for _ in 0..60 {
-        // Columns: the derivatives along the axes.
-        let [[a, c], [b, d]] = derivative;
+        let [[a, b], [c, d]] = derivative;
         let determinant = a * d - b * c;
         let way = [(d * miss[0] - b * miss[1]) / determinant, (a * miss[1] - c * miss[0]) / determinant];
         let attempts = (0..30).map(|halvings| 0.5f64.powi(halvings));

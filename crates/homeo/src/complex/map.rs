@@ -2,15 +2,13 @@
 
 use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 
-use super::bound::Problem;
 use super::error::{ComplexError, SpeedError};
-use super::frame::{Chart, Frame, Outline};
-use super::guide::Guide;
 use super::invert::{self, Start};
 use super::optimize::Search;
 use super::speed::EdgeSpeeds;
+use crate::composite::chart::Step;
 use crate::composite::number::{Form, Number};
-use crate::composite::{Jacobian, JacobianLimits, JacobianVerdict};
+use crate::composite::{Jacobian, JacobianLimits, JacobianVerdict, Tiling, check_tiling, triangulate};
 use crate::map::{Enclosed2, PlanarBijection, PlanarEvaluationError};
 use crate::progress::Progress;
 
@@ -23,13 +21,13 @@ pub struct ComplexParams {
     pub grid: usize,
     /// So often a point where the proof failed is added to the samples, and the search goes on.
     pub rounds: usize,
-    /// Limits of the proof; a chart is a triangle at a vertex or a square.
+    /// Limits of the proof.
     pub limits: JacobianLimits,
 }
 
 impl Default for ComplexParams {
     fn default() -> Self {
-        let limits = JacobianLimits { boxes_per_chart: 200_000, ..JacobianLimits::default() };
+        let limits = JacobianLimits { boxes_per_chart: 20_000, ..JacobianLimits::default() };
         Self { degree: 4, grid: 24, rounds: 4, limits }
     }
 }
@@ -74,7 +72,8 @@ pub struct ComplexInfo {
 pub struct ComplexMap {
     source: PlanarDomain,
     target: PlanarDomain,
-    outline: Outline,
+    tiling: Tiling,
+    step: Step,
     speeds: EdgeSpeeds,
     starts: Vec<Start>,
 }
@@ -83,11 +82,11 @@ pub struct ComplexMap {
 ///
 /// # Guarantee
 /// [`JacobianVerdict::Positive`] is proved in the open domain, and in the limit towards vertices and edges: the map is a
-/// homeomorphism. [`JacobianVerdict::Negative`] is proved at its point, of the closed domain and no vertex; there are points
-/// of the open domain next to it where it is negative, too. Nothing depends on the number of threads.
+/// homeomorphism. [`JacobianVerdict::Negative`] is proved at its point, of the open domain. Nothing depends on the number of
+/// threads.
 ///
 /// # Errors
-/// There are not as many speeds as edges.
+/// There are not as many speeds as edges; or the source was not cut into triangles.
 ///
 /// # Complexity
 /// Boxes times vertices.
@@ -106,17 +105,22 @@ pub fn bound_complex_jacobian(
     pair: &DomainPair,
     speeds: &EdgeSpeeds,
     limits: &JacobianLimits,
-) -> Result<JacobianVerdict, SpeedError> {
-    let outline = fitting(pair, speeds)?;
-    Ok(Problem { outline: &outline, domain: &pair.source, speeds }.bound(limits, &|| false))
+) -> Result<JacobianVerdict, ComplexError> {
+    let step = plain_step(pair, &triangulate(&pair.source)?);
+    Ok(fitting(step, speeds)?.bound(limits, 0, &|| false).0)
 }
 
-fn fitting(pair: &DomainPair, speeds: &EdgeSpeeds) -> Result<Outline, SpeedError> {
-    let (edges, found) = (pair.source.vertex_count(), speeds.control_values().len());
+/// The mean value map, with the charts of triangles that tile the source.
+fn plain_step(pair: &DomainPair, tiling: &Tiling) -> Step {
+    Step::new(&pair.source, tiling, pair.target.vertices().collect())
+}
+
+fn fitting(step: Step, speeds: &EdgeSpeeds) -> Result<Step, SpeedError> {
+    let (edges, found) = (step.points.len(), speeds.control_values().len());
     if edges != found {
         return Err(SpeedError::Edges { edges, found });
     }
-    Ok(Outline::new(&pair.source, &pair.target))
+    Ok(step.with_speeds(speeds.clone()))
 }
 
 impl ComplexMap {
@@ -132,14 +136,15 @@ impl ComplexMap {
         params: &ComplexParams,
         progress: &(dyn Progress + Sync),
     ) -> Result<(Self, ComplexInfo), ComplexError> {
-        let outline = Outline::new(&pair.source, &pair.target);
         if !(1..=8).contains(&params.degree) {
             return Err(SpeedError::Degree { degree: params.degree }.into());
         }
         let is_cancelled = || progress.is_cancelled();
         progress.stage("speeds");
+        let tiling = triangulate(&pair.source)?;
+        let step = plain_step(pair, &tiling);
         let domains = [&pair.source, &pair.target];
-        let mut search = Search::new(&outline, domains, params.degree, params.grid.max(1), &is_cancelled);
+        let mut search = Search::new(&step, domains, params.degree, params.grid.max(1), &is_cancelled);
         if is_cancelled() {
             return Err(ComplexError::Stopped);
         }
@@ -149,12 +154,13 @@ impl ComplexMap {
             search.ascend(&is_cancelled);
             let speeds = search.speeds()?;
             progress.stage("proof");
-            let problem = Problem { outline: &outline, domain: &pair.source, speeds: &speeds };
+            let proved = fitting(step.clone(), &speeds)?;
             // Best speeds that fold at samples do not get better by more samples.
-            if let Some((point, at_most)) = problem.first_fold(&search.folds()) {
+            let folds = search.folds().into_iter().filter(|&point| pair.source.contains(point));
+            if let Some((point, at_most)) = folds.into_iter().find_map(|point| Some((point, proved.fold_at(point)?))) {
                 return Err(ComplexError::Folds { point, at_most });
             }
-            let verdict = problem.bound(&params.limits, &is_cancelled);
+            let (verdict, _) = proved.bound(&params.limits, 0, &is_cancelled);
             if is_cancelled() {
                 return Err(ComplexError::Stopped);
             }
@@ -162,7 +168,7 @@ impl ComplexMap {
                 JacobianVerdict::Positive { least, boxes } => {
                     let sampled = [search.least(), linear].map(|share| share * search.ratio());
                     let info = ComplexInfo { least_determinant: least, sampled, boxes, rounds };
-                    return Ok((Self::of(pair, outline.clone(), speeds), info));
+                    return Ok((Self::of(pair, tiling, proved, speeds), info));
                 }
                 JacobianVerdict::Negative { point, at_most, .. } => (point, ComplexError::Folds { point, at_most }),
                 JacobianVerdict::Undecided { point, .. } => (point, ComplexError::Undecided { point }),
@@ -191,7 +197,7 @@ impl ComplexMap {
     /// [`bound_complex_jacobian`].
     ///
     /// # Errors
-    /// There are not as many speeds as edges.
+    /// There are not as many speeds as edges; or the source was not cut into triangles.
     ///
     /// # Example
     /// ```
@@ -204,13 +210,23 @@ impl ComplexMap {
     /// assert!(ComplexMap::from_speeds(&pair, EdgeSpeeds::linear(3)).is_err());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn from_speeds(pair: &DomainPair, speeds: EdgeSpeeds) -> Result<Self, SpeedError> {
-        Ok(Self::of(pair, fitting(pair, &speeds)?, speeds))
+    pub fn from_speeds(pair: &DomainPair, speeds: EdgeSpeeds) -> Result<Self, ComplexError> {
+        Self::from_parts(pair, triangulate(&pair.source)?, speeds)
     }
 
-    fn of(pair: &DomainPair, outline: Outline, speeds: EdgeSpeeds) -> Self {
+    /// As [`from_speeds`](Self::from_speeds), with triangles that tile the source.
+    ///
+    /// # Errors
+    /// There are not as many speeds as edges; or the triangles do not tile the source.
+    pub fn from_parts(pair: &DomainPair, tiling: Tiling, speeds: EdgeSpeeds) -> Result<Self, ComplexError> {
+        check_tiling(&pair.source, &tiling)?;
+        let step = fitting(plain_step(pair, &tiling), &speeds)?;
+        Ok(Self::of(pair, tiling, step, speeds))
+    }
+
+    fn of(pair: &DomainPair, tiling: Tiling, step: Step, speeds: EdgeSpeeds) -> Self {
         let (source, target) = (pair.source.clone(), pair.target.clone());
-        let mut this = Self { source, target, outline, speeds, starts: Vec::new() };
+        let mut this = Self { source, target, tiling, step, speeds, starts: Vec::new() };
         this.starts = invert::starts(&this);
         this
     }
@@ -220,8 +236,13 @@ impl ComplexMap {
         &self.speeds
     }
 
-    pub(super) fn outline(&self) -> &Outline {
-        &self.outline
+    /// The triangles in which the proof is made.
+    pub fn tiling(&self) -> &Tiling {
+        &self.tiling
+    }
+
+    pub(super) fn step(&self) -> &Step {
+        &self.step
     }
 
     pub(super) fn start_points(&self) -> &[Start] {
@@ -245,7 +266,7 @@ impl ComplexMap {
         if let Some(image) = invert::along_edge(self, point) {
             return Ok(image);
         }
-        let image = self.enclose(point);
+        let image = self.step.enclose(point.map(Form::of));
         let radius = image[0].radius().max(image[1].radius());
         if !radius.is_finite() {
             return Err(PlanarEvaluationError::NotProved(0));
@@ -276,35 +297,11 @@ impl ComplexMap {
     /// The derivative at a point, rounded; rows are the gradients of the two coordinates of the image. `None` outside and
     /// at vertices.
     pub fn jacobian(&self, point: Point2) -> Option<Jacobian> {
-        if !self.source.contains(point) {
+        if !self.source.contains(point) || self.step.points.contains(&point) {
             return None;
         }
-        let (_, [x, y]) = self.near(point);
-        let rows = [0, 1].map(|k| [x[k], y[k]]);
+        let (_, rows) = self.step.value(point);
         rows.iter().flatten().all(|d| d.is_finite()).then_some(rows)
-    }
-
-    /// Image and derivatives along the axes, rounded; also a little outside.
-    pub(super) fn near(&self, point: Point2) -> (Point2, [Point2; 2]) {
-        let guide = Guide::at(&self.outline, point, None, [0.0; 2]);
-        let local = Frame::<f64>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, point, &guide);
-        (local.value, local.along)
-    }
-
-    /// The image of a point.
-    pub(super) fn enclose(&self, point: Point2) -> [Form; 2] {
-        let guide = Guide::at(&self.outline, point, None, [0.0; 2]);
-        Frame::<Form>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, point.map(Form::of), &guide).value
-    }
-
-    /// At least the norm of the inverse of the derivative in a box round a point; not a number if unknown.
-    pub(super) fn inverse_rate(&self, point: Point2, radius: f64) -> f64 {
-        let guide = Guide::at(&self.outline, point, None, [0.0; 2]);
-        let at = [0, 1].map(|axis| Form::within(radius, point[axis]).along(axis));
-        let local = Frame::<Form>::new(&self.outline, &self.speeds).evaluate(&Chart::Plane, at, &guide);
-        let least = local.determinant().low();
-        let squares: f64 = local.along.iter().flatten().map(|d| d.size() * d.size()).sum();
-        if least > 0.0 { squares.sqrt() / least * (1.0 + 1e-12) } else { f64::NAN }
     }
 }
 

@@ -12,12 +12,7 @@
 //! Fails when:  no speeds of the degree are found that make it positive, or the proof reaches its limit -> [`ComplexError`].
 //! See:         `docs/theory/complex.md`.
 
-mod bound;
-mod chart;
-mod dual;
 mod error;
-mod frame;
-mod guide;
 mod invert;
 mod map;
 mod optimize;

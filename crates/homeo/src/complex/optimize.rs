@@ -7,10 +7,11 @@
 //! Teboulle 2003), so monotony holds at every step without a projection. What it finds is a proposal, and proved apart.
 
 use super::SpeedError;
-use super::chart::Cover;
-use super::frame::{Chart, Frame, Outline};
-use super::guide::Guide;
 use super::speed::{EdgeSpeeds, power_form};
+use crate::composite::chart::{Chart, Step};
+use crate::composite::frame::Frame;
+use crate::composite::guide::Guide;
+use crate::composite::line::Line;
 use homeo_core::planar::{PlanarDomain, Point2};
 
 /// Sharpness of the smooth minimum by stages, in units of one over the ratio of areas, and steps for each.
@@ -18,7 +19,7 @@ const STAGES: [f64; 6] = [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0];
 const STEPS: usize = 150;
 /// No increment is less than this part of that of linear speeds, lest rounding make two control values one.
 const LEAST_INCREMENT: f64 = 1e-4;
-/// A corner is sampled here, in its own coordinates.
+/// A chart of a vertex is sampled here, in its own coordinates.
 const CORNER: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 0.5], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
 /// An edge is sampled at multiples of one over this.
 const EDGE: usize = 16;
@@ -36,13 +37,14 @@ struct Sample {
 
 /// A search that can go on when points are added.
 pub(super) struct Search<'a> {
-    outline: &'a Outline,
+    /// The mean value map.
+    step: &'a Step,
     degree: usize,
     /// Derivatives by control values are for a map of areas with this ratio.
     ratio: f64,
     samples: Vec<Sample>,
-    /// The quotient that each inner control value adds to.
-    basis: Vec<Vec<f64>>,
+    /// Of each edge, for each inner control value: what a deviation of it adds.
+    basis: Vec<Vec<Line<f64>>>,
     /// Of each edge `d` positive numbers that add up to 1.
     increments: Vec<Vec<f64>>,
 }
@@ -52,38 +54,35 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl<'a> Search<'a> {
-    /// From linear speeds, with samples in corners, on edges and on a grid of so many points along the longer side; with fewer
+    /// From linear speeds, with samples in the charts of vertices, on edges and on a grid of so many points along the longer side; with fewer
     /// if it is cancelled.
     pub fn new(
-        outline: &'a Outline,
+        step: &'a Step,
         domains: [&PlanarDomain; 2],
         degree: usize,
         grid: usize,
         is_cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Self {
         let [source, target] = domains.map(area);
-        let increments = vec![vec![1.0 / degree as f64; degree]; outline.count()];
+        let count = step.points.len();
+        let increments = vec![vec![1.0 / degree as f64; degree]; count];
         let unit = |k: usize| (0..degree - 1).map(|l| f64::from(u8::from(k == l))).collect::<Vec<f64>>();
-        let basis = (0..degree - 1).map(|k| power_form(degree, &unit(k))).collect();
-        let mut this = Self { outline, degree, ratio: target / source, samples: Vec::new(), basis, increments };
-        let cover = Cover::new(outline, domains[0]);
-        let mut frame = this.frame();
-        for piece in cover.pieces.iter().filter(|piece| piece.vertex().is_some()) {
+        let quotients: Vec<Vec<f64>> = (0..degree - 1).map(|k| power_form(degree, &unit(k))).collect();
+        let lines = |edge: usize| quotients.iter().map(|quotient| step.line(edge, quotient.clone())).collect();
+        let basis = (0..count).map(lines).collect();
+        let mut this = Self { step, degree, ratio: target / source, samples: Vec::new(), basis, increments };
+        for chart in step.charts.iter().filter(|chart| step.is_vertex(chart.corners[0])) {
             if is_cancelled() {
                 return this;
             }
-            for at in CORNER {
-                let point = piece.place(outline, at);
-                let guide = Guide::at(outline, point, piece.vertex(), piece.direction(at[1]));
-                this.add(&mut frame, (&piece.rounded(), at), point, &guide);
-            }
+            CORNER.into_iter().for_each(|at| this.add(chart, at));
         }
         for [p, q] in domains[0].edges() {
             if is_cancelled() {
                 return this;
             }
             for share in (1..EDGE).map(|k| k as f64 / EDGE as f64) {
-                this.add_point(&mut frame, [0, 1].map(|k| p[k] + share * (q[k] - p[k])));
+                this.insist([0, 1].map(|k| p[k] + share * (q[k] - p[k])));
             }
         }
         let [low, high] = domains[0].bounds();
@@ -95,41 +94,32 @@ impl<'a> Search<'a> {
                 return this;
             }
             if domains[0].contains(point) {
-                this.add_point(&mut frame, point);
+                this.insist(point);
             }
         }
         this
     }
 
-    fn frame(&self) -> Frame<'a, f64> {
-        Frame::with_quotients(self.outline, vec![vec![0.0; self.degree - 1]; self.outline.count()])
-    }
-
     /// One more sample, where the search was too kind.
     pub fn insist(&mut self, point: Point2) {
-        let mut frame = self.frame();
-        self.add_point(&mut frame, point);
+        let (chart, at) = self.step.locate(point);
+        self.add(chart, at);
     }
 
-    fn add_point(&mut self, frame: &mut Frame<f64>, point: Point2) {
-        let guide = Guide::at(self.outline, point, None, [0.0; 2]);
-        self.add(frame, (&Chart::Plane, point), point, &guide);
-    }
-
-    fn add(&mut self, frame: &mut Frame<f64>, (chart, at): (&Chart<f64>, [f64; 2]), point: Point2, guide: &Guide) {
-        let plain = frame.evaluate(chart, at, guide);
-        let mut by = Vec::with_capacity(self.outline.count() * self.basis.len());
-        for edge in 0..self.outline.count() {
-            for quotient in &self.basis {
-                frame.quotients_mut()[edge].copy_from_slice(quotient);
-                by.push(frame.response(edge, chart, at));
-            }
-            frame.quotients_mut()[edge].fill(0.0);
-        }
+    fn add(&mut self, chart: &Chart, [s, lambda]: [f64; 2]) {
+        let mut frame = Frame::<f64>::new(self.step, chart);
+        let view = frame.look(s, lambda);
+        let sums = frame.sums(&view, &Guide::NONE);
+        let plain = frame.local(&view, &sums, &Guide::NONE);
+        let response = |(edge, line): (usize, &Line<f64>)| {
+            view.columns(frame.added(&view, edge, line).map(|added| added.over(sums.total)))
+        };
+        let all = self.basis.iter().enumerate().flat_map(|(edge, lines)| lines.iter().map(move |line| (edge, line)));
+        let by: Vec<Pair> = all.map(response).collect();
         let factor = 1.0 / (plain.turn * self.ratio);
-        let is_good = plain.along.iter().chain(by.iter().flatten()).flatten().all(|x| x.is_finite());
+        let is_good = plain.columns.iter().chain(by.iter().flatten()).flatten().all(|x| x.is_finite());
         if is_good && factor.is_finite() {
-            self.samples.push(Sample { point, along: plain.along, by, factor });
+            self.samples.push(Sample { point: self.step.place(chart, [s, lambda]), along: plain.columns, by, factor });
         }
     }
 
@@ -198,7 +188,7 @@ impl<'a> Search<'a> {
 
     /// Ascends, until it was done or cancelled.
     pub fn ascend(&mut self, is_cancelled: &(dyn Fn() -> bool + Sync)) {
-        let mut slopes = vec![0.0; self.outline.count() * (self.degree - 1)];
+        let mut slopes = vec![0.0; self.step.points.len() * (self.degree - 1)];
         for sharpness in STAGES {
             let mut rate = 0.1;
             for _ in 0..STEPS {

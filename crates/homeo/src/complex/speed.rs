@@ -73,7 +73,7 @@ impl EdgeSpeeds {
     }
 
     /// Coefficients of the polynomial `(σ(t) - t) / (t (1 - t))`, from the constant one on; `d - 1` of them.
-    pub(super) fn quotient<T: Number>(&self, edge: usize) -> Vec<T> {
+    pub(crate) fn quotient<T: Number>(&self, edge: usize) -> Vec<T> {
         let part = |numerator: usize| T::of(numerator as f64) / T::of(self.degree as f64);
         let deviations: Vec<T> =
             self.inner[edge].iter().enumerate().map(|(k, &value)| T::of(value) - part(k + 1)).collect();

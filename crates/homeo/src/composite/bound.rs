@@ -126,7 +126,7 @@ impl Step {
     ///
     /// Charts are bounded in chunks, that of number `first` before all others; also returned is which one ended the attempt.
     /// A step that failed there fails there again if it is shortened by too little.
-    pub(super) fn bound(
+    pub fn bound(
         &self,
         limits: &JacobianLimits,
         first: usize,
@@ -155,6 +155,11 @@ impl Step {
         (JacobianVerdict::Positive { least, boxes }, first)
     }
 
+    /// An upper bound of the determinant at a point of the domain, if that is proved to be negative.
+    pub fn fold_at(&self, point: Point2) -> Option<f64> {
+        self.determinant_at(point).map(Form::high).filter(|&high| high < 0.0)
+    }
+
     /// A point where the map is proved to fold, if one of some samples is such.
     fn sampled_fold(&self) -> Option<(Point2, f64)> {
         let worst_of = |chart: &Chart| {
@@ -180,8 +185,7 @@ impl Step {
         if [[a, b], [b, c], [c, a]].iter().any(|&[from, to]| orient2d(from, to, point) != sign) {
             return None;
         }
-        let at_most = self.determinant_at(point)?.high();
-        (at_most < 0.0).then_some((point, at_most))
+        Some((point, self.fold_at(point)?))
     }
 
     fn witnessed(&self, chart: &Chart, at: [f64; 2], boxes: u64) -> JacobianVerdict {
@@ -229,7 +233,7 @@ impl Step {
     }
 
     /// Where a point of a chart is, rounded.
-    pub(super) fn place(&self, chart: &Chart, [s, lambda]: [f64; 2]) -> Point2 {
+    pub fn place(&self, chart: &Chart, [s, lambda]: [f64; 2]) -> Point2 {
         let [v, from, to] = chart.corners.map(|corner| self.corner(corner));
         let [a, b, c] = chart.part.factors().map(|[above, below]| above / below);
         std::array::from_fn(|k| {

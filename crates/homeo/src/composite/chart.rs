@@ -11,10 +11,11 @@ use homeo_core::planar::{PlanarDomain, Point2};
 
 use super::number::{Form, Number};
 use super::triangulation::{Tiling, next_vertices};
+use crate::complex::EdgeSpeeds;
 
 /// Which edge of the domain a chart touches along `λ = 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Touch {
+pub(crate) enum Touch {
     /// None: only the vertex is on the boundary, if anything.
     Nothing,
     /// The edge from the vertex to the next one of its ring.
@@ -25,7 +26,7 @@ pub(super) enum Touch {
 
 /// Which part of its triangle a chart is: where `p` and `q` are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub(crate) enum Part {
     /// The triangle, where at most the apex is a vertex of the domain.
     Whole,
     /// Half of it, `p` the middle of a side, where the third corner is no vertex of the domain.
@@ -56,7 +57,7 @@ impl Part {
 
 /// Part of a triangle.
 #[derive(Clone, Debug)]
-pub(super) struct Chart {
+pub(crate) struct Chart {
     /// Numbers of the apex `v`, of the corner on whose side `p` lies, and of the third.
     pub corners: [u32; 3],
     pub part: Part,
@@ -65,9 +66,9 @@ pub(super) struct Chart {
     pub turn: Form,
 }
 
-/// A mean value map from one domain to another, and the charts of the first.
+/// A mean value map from one domain to another, or a complex map, and the charts of the first.
 #[derive(Clone, Debug)]
-pub(super) struct Step {
+pub(crate) struct Step {
     /// Vertices of the domain.
     pub points: Vec<Point2>,
     /// Corners of triangles that are no vertices; numbered after these.
@@ -76,6 +77,8 @@ pub(super) struct Step {
     pub next: Vec<u32>,
     pub previous: Vec<u32>,
     pub charts: Vec<Chart>,
+    /// Of a complex map.
+    pub speeds: Option<EdgeSpeeds>,
 }
 
 impl Step {
@@ -87,9 +90,15 @@ impl Step {
         for (from, &to) in next.iter().enumerate() {
             previous[to as usize] = from as u32;
         }
-        let mut step = Self { points, added: tiling.added.clone(), images, next, previous, charts: Vec::new() };
+        let mut step =
+            Self { points, added: tiling.added.clone(), images, next, previous, charts: Vec::new(), speeds: None };
         step.charts = tiling.triangles.iter().flat_map(|&triangle| step.charts_of(triangle)).collect();
         step
+    }
+
+    /// The complex map of the same domains with such speeds, one for each edge.
+    pub fn with_speeds(self, speeds: EdgeSpeeds) -> Self {
+        Self { speeds: Some(speeds), ..self }
     }
 
     /// Where a corner of a triangle is.

@@ -19,7 +19,7 @@ pub type Jacobian = [[f64; 2]; 2];
 
 impl Step {
     /// The chart of a point, and where in it; that of a nearby point of the domain for a point slightly outside.
-    fn locate(&self, point: Point2) -> (&Chart, [f64; 2]) {
+    pub fn locate(&self, point: Point2) -> (&Chart, [f64; 2]) {
         let mut best = (f64::INFINITY, 0, [0.0; 2]);
         for (number, chart) in self.charts.iter().enumerate() {
             let [a, b] = self.coordinates(chart, point);
@@ -62,7 +62,7 @@ impl Step {
     }
 
     /// Image of a point, and the derivative there; at a vertex the derivative along one chart.
-    pub(super) fn value(&self, point: Point2) -> (Point2, Jacobian) {
+    pub fn value(&self, point: Point2) -> (Point2, Jacobian) {
         let (chart, [s, lambda]) = self.locate(point);
         let mut frame = Frame::<f64>::new(self, chart);
         let local = frame.evaluate(s, lambda, &Guide::NONE);
@@ -99,7 +99,7 @@ impl Step {
     }
 
     /// A box that holds the images of all points of the closed domain in a box; unknown where that is too large.
-    pub(super) fn enclose(&self, at: Region) -> Region {
+    pub fn enclose(&self, at: Region) -> Region {
         let mut hull: Option<Region> = None;
         self.meet(at, |frame, sides| {
             let guide = frame.guide(sides[0].middle, sides[1].middle);

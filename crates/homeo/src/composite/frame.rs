@@ -4,11 +4,12 @@ use homeo_core::planar::Point2;
 
 use super::chart::{Chart, Step, Touch};
 use super::guide::{Guide, Linear};
+use super::line::Line;
 use super::number::{Edge, Motion, Number, Sight, half_tangent};
 use super::vector::{Dual, Vector, cross, dot, minus, of, opposite, plus, scaled};
 
 /// A chart and all vertices as seen from its own.
-pub(super) struct Frame<'a, T> {
+pub(crate) struct Frame<'a, T> {
     pub step: &'a Step,
     pub chart: &'a Chart,
     /// `p - v` and `q - p`.
@@ -19,14 +20,16 @@ pub(super) struct Frame<'a, T> {
     pub offsets: Vec<[Vector<T>; 2]>,
     /// By their first vertices.
     edges: Vec<Edge<T>>,
-    sights: Vec<Sight<T>>,
+    /// The same edges, if the images of points run along them at speeds; or nothing.
+    pub(super) lines: Vec<Line<T>>,
+    pub(super) sights: Vec<Sight<T>>,
     /// Of each edge, by its first vertex: the half tangent and its gradient.
-    tangents: Vec<[T; 3]>,
+    pub(super) tangents: Vec<[T; 3]>,
 }
 
 /// A mean value map near a point of a chart.
 #[derive(Clone, Copy)]
-pub(super) struct Local<T> {
+pub(crate) struct Local<T> {
     /// Where the point goes.
     pub image: Vector<T>,
     /// The determinant of the derivative.
@@ -55,7 +58,7 @@ impl<'a, T: Number> Frame<'a, T> {
         let edges = step.points.iter().zip(&step.next).map(edge).collect();
         let sights = vec![nothing(); offsets.len()];
         let tangents = vec![[T::of(0.0); 3]; offsets.len()];
-        Self { step, chart, axes, turn: T::of_form(chart.turn), offsets, edges, sights, tangents }
+        Self { step, chart, axes, turn: T::of_form(chart.turn), offsets, edges, lines: step.lines(), sights, tangents }
     }
 
     /// Two coordinates of a point: `s`, and `s λ`.
@@ -69,21 +72,9 @@ impl<'a, T: Number> Frame<'a, T> {
     ///
     /// Any guide gives the same exact result.
     pub fn evaluate(&mut self, s: T, lambda: T, guide: &Guide) -> Local<T> {
-        let along = plus(self.axes[0], scaled(lambda, self.axes[1]));
-        let Some(apex) = self.apex() else { return self.evaluate_at(scaled(s, along), guide) };
-        let towards = T::sight(along, &T::motion(along)).unit;
-        let length = T::length(along[0], along[1]);
-        // Instead of ∂/∂λ the derivative almost across e, lest determinants be differences of large numbers.
-        let skew = T::of(dot(self.axes[1], along).near() / dot(along, along).near());
-        let across = minus(self.axes[1], scaled(skew, along));
-        let length = Dual([length, T::of(0.0), dot(towards, self.axes[1])]);
-        let view = View { position: scaled(s, along), s, along, across, skew, length };
-        self.look(view.position, Some((apex, opposite(towards))));
-        let edges = [Touch::Next, Touch::Previous].map(|touch| self.edge_at_apex(touch, &view, lambda));
-        let [weight, first, second, own] = self.sums(&edges, &view, guide);
-        let total = own.plus(Dual([s, T::of(1.0), (skew * s).opposite()]).times(weight));
-        let rest = [first.over(total), second.over(total)];
-        self.assemble(&view, rest, &guide.linear)
+        let view = self.look(s, lambda);
+        let sums = self.sums(&view, guide);
+        self.local(&view, &sums, guide)
     }
 
     /// The apex, if it is a vertex of the domain.
@@ -92,66 +83,77 @@ impl<'a, T: Number> Frame<'a, T> {
         self.step.is_vertex(v).then_some(v as usize)
     }
 
-    /// The map and its derivative at `v + position`, in the open domain.
-    fn evaluate_at(&mut self, position: Vector<T>, guide: &Guide) -> Local<T> {
+    /// Looks at all vertices and edges from `v + s e(λ)`.
+    pub fn look(&mut self, s: T, lambda: T) -> View<T> {
         let (zero, one) = (T::of(0.0), T::of(1.0));
-        let axes = [[one, zero], [zero, one]];
-        let [along, across] = axes;
-        let view = View { position, s: one, along, across, skew: zero, length: Dual([one, zero, zero]) };
-        self.look(position, None);
-        let [weight, first, second, _] = self.sums(&[], &view, guide);
-        let rest = [first.over(weight), second.over(weight)];
-        let slope = |k: usize| -> Vector<T> { std::array::from_fn(|row| rest[row].0[k + 1]) };
-        let columns: [Vector<T>; 2] = std::array::from_fn(|k| plus(apply(&guide.linear, axes[k]), slope(k)));
-        let mixed = cross(apply(&guide.linear, along), slope(1))
-            + cross(slope(0), apply(&guide.linear, across))
-            + cross(slope(0), slope(1));
+        let along = plus(self.axes[0], scaled(lambda, self.axes[1]));
+        let position = scaled(s, along);
+        let Some(apex) = self.apex() else {
+            self.look_from(position, None);
+            let [along, across] = [[one, zero], [zero, one]];
+            return View {
+                position,
+                s: one,
+                along,
+                across,
+                skew: zero,
+                length: Dual([one, zero, zero]),
+                edges: vec![],
+            };
+        };
+        let towards = T::sight(along, &T::motion(along)).unit;
+        // Instead of ∂/∂λ the derivative almost across e, lest determinants be differences of large numbers.
+        let skew = T::of(dot(self.axes[1], along).near() / dot(along, along).near());
+        let across = minus(self.axes[1], scaled(skew, along));
+        let length = Dual([T::length(along[0], along[1]), zero, dot(towards, self.axes[1])]);
+        self.look_from(position, Some((apex, opposite(towards))));
+        let mut view = View { position, s, along, across, skew, length, edges: vec![] };
+        view.edges = [Touch::Next, Touch::Previous].map(|touch| self.edge_at_apex(touch, &view, lambda)).into();
+        view
+    }
+
+    /// Sums of all vertices and edges.
+    pub fn sums(&self, view: &View<T>, guide: &Guide) -> Sums<T> {
+        let factor = view.factor();
+        let [mut weight, first, second] =
+            self.regular_sums(guide).map(|[value, x, y]| view.chain(value, [x, y]).with(factor));
+        let mut sums = Sums { total: Dual([T::of(0.0); 3]), numerator: [first, second] };
+        for edge in &view.edges {
+            let tangent = view.tangent(edge);
+            let share = tangent.times(self.inverse(view, edge.end));
+            weight = weight.plus(share);
+            let residual = self.residual(edge.end, guide);
+            for (sum, c) in sums.numerator.iter_mut().zip(residual) {
+                *sum = sum.plus(share.times_constant(c));
+            }
+            sums.total = sums.total.plus(tangent.over(view.length));
+        }
+        // With an apex everything is divided by `s` but its own weight.
+        sums.total = if view.edges.is_empty() { weight } else { sums.total.plus(view.along_dual().times(weight)) };
+        for (edge, line) in self.lines.iter().enumerate() {
+            let [x, y] = self.added(view, edge, line);
+            sums.numerator = [sums.numerator[0].plus(x), sums.numerator[1].plus(y)];
+        }
+        sums
+    }
+
+    /// From sums to the map.
+    pub fn local(&self, view: &View<T>, sums: &Sums<T>, guide: &Guide) -> Local<T> {
+        let rest = sums.numerator.map(|sum| sum.over(sums.total));
+        let axes = [view.along, view.across];
+        let added = view.columns(rest);
+        let [along, across] = axes.map(|axis| apply(&guide.linear, axis));
+        // det(M e + g, M e' + h), where det(M e, M e') is det M times that of the axes, which is constant.
+        let mixed = cross(along, added[1]) + cross(added[0], across) + cross(added[0], added[1]);
         let own = cross(of::<T>(guide.linear[0]), of(guide.linear[1]));
         let base = plus(of(self.step.base_image(self.chart)), of(guide.shift));
-        let moved = plus(apply(&guide.linear, position), rest.map(|c| c.0[0]));
-        Local { image: plus(base, moved), determinant: own + mixed, axes, columns, turn: one }
-    }
-
-    /// Sums of weights, and of weights times residuals, of all vertices but the apex; and the weight of the apex, times `s`. All
-    /// times the factor of the edge that is touched.
-    fn sums(&self, edges: &[AtApex<T>], view: &View<T>, guide: &Guide) -> [Dual<T>; 4] {
-        let factor = edges.iter().find_map(|edge| edge.factor);
-        let [mut weight, mut first, mut second] =
-            self.regular_sums(guide).map(|[value, x, y]| view.chain(value, [x, y]).with(factor));
-        let mut own = Dual([T::of(0.0); 3]);
-        for edge in edges {
-            // Its own factor is in its tangent.
-            let tangent = edge.tangent.with(factor.filter(|_| edge.factor.is_none()));
-            let Sight { inverse, pull, .. } = self.sights[edge.end];
-            let share = tangent.times(view.chain(inverse, scaled(inverse, pull)));
-            let [x, y] = self.residual(edge.end, guide);
-            weight = weight.plus(share);
-            first = first.plus(share.times_constant(x));
-            second = second.plus(share.times_constant(y));
-            own = own.plus(tangent.over(view.length));
+        let moved = plus(apply(&guide.linear, view.position), scaled(view.s, rest.map(|c| c.0[0])));
+        let columns = [plus(along, added[0]), plus(across, added[1])];
+        let image = plus(base, moved);
+        if view.edges.is_empty() {
+            return Local { image, determinant: own + mixed, axes, columns, turn: T::of(1.0) };
         }
-        [weight, first, second, own]
-    }
-
-    /// From `G` to the map: `f = image of v + s (M e + G)`.
-    fn assemble(&self, view: &View<T>, rest: [Dual<T>; 2], linear: &Linear) -> Local<T> {
-        let s = view.s;
-        let value: Vector<T> = std::array::from_fn(|k| rest[k].0[0]);
-        let by_s: Vector<T> = std::array::from_fn(|k| rest[k].0[0] + s * rest[k].0[1]);
-        let by_across: Vector<T> = std::array::from_fn(|k| rest[k].0[2] - view.skew * rest[k].0[0]);
-        let axes = [view.along, view.across];
-        let [along, across] = axes.map(|axis| apply(linear, axis));
-        // det(M e + g, M e' + h), where det(M e, M e') is det M times that of the axes, which is constant.
-        let mixed = cross(along, by_across) + cross(by_s, across) + cross(by_s, by_across);
-        let own = cross(of::<T>(linear[0]), of(linear[1]));
-        let at = of::<T>(self.step.images[self.chart.corners[0] as usize]);
-        Local {
-            image: plus(at, scaled(s, plus(along, value))),
-            determinant: own + mixed / self.turn,
-            columns: [plus(along, by_s), plus(across, by_across)],
-            axes,
-            turn: self.turn,
-        }
+        Local { image, determinant: own + mixed / self.turn, axes, columns, turn: self.turn }
     }
 
     /// The other end of an edge at the apex.
@@ -167,8 +169,14 @@ impl<'a, T: Number> Frame<'a, T> {
         minus(minus(image, of(guide.shift)), apply(&guide.linear, offset))
     }
 
-    /// Looks at all vertices and edges from `v + offset`; at the apex, if that is one, in a direction, and not at its edges.
-    fn look(&mut self, offset: Vector<T>, apex: Option<(usize, Vector<T>)>) {
+    /// One over the distance of a vertex.
+    pub(super) fn inverse(&self, view: &View<T>, vertex: usize) -> Dual<T> {
+        let Sight { inverse, pull, .. } = self.sights[vertex];
+        view.chain(inverse, scaled(inverse, pull))
+    }
+
+    /// Looks from `v + offset`; at the apex, if that is one, in a direction, and not at its edges.
+    fn look_from(&mut self, offset: Vector<T>, apex: Option<(usize, Vector<T>)>) {
         let motion = T::motion(offset);
         for (sight, [at, _]) in self.sights.iter_mut().zip(&self.offsets) {
             *sight = T::sight(minus(*at, offset), &motion);
@@ -210,7 +218,7 @@ impl<'a, T: Number> Frame<'a, T> {
     fn edge_at_apex(&self, touch: Touch, view: &View<T>, lambda: T) -> AtApex<T> {
         let end = self.neighbour(touch);
         let Sight { unit, inverse, pull, .. } = self.sights[end];
-        let View { position, s, along, across, skew, length: Dual([size, _, growth]) } = *view;
+        let View { position, s, along, across, skew, length: Dual([size, _, growth]), .. } = *view;
         if self.chart.touch == touch {
             // (|e| r + e . there) / |2 turn|.
             let there = minus(self.offsets[end][0], position);
@@ -223,7 +231,7 @@ impl<'a, T: Number> Frame<'a, T> {
             let sign = if touch == Touch::Next { 2.0 } else { -2.0 };
             let divisor = self.turn.by(sign);
             let factor = Some(Dual([lambda, T::of(0.0), T::of(1.0)]));
-            return AtApex { factor, tangent: Dual([value, by_s, by_across].map(|c| c / divisor)), end };
+            return AtApex { touch, factor, tangent: Dual([value, by_s, by_across].map(|c| c / divisor)), end };
         }
         let towards = self.sights[self.chart.corners[0] as usize].unit;
         let turning = s * cross(across, pull) - self.turn / (size * size);
@@ -234,7 +242,7 @@ impl<'a, T: Number> Frame<'a, T> {
         };
         let t = half_tangent(from, to);
         let rate = T::of(0.5) + (t * t).by(0.5);
-        AtApex { factor: None, tangent: Dual([t, rate * by_s, rate * by_across]), end }
+        AtApex { touch, factor: None, tangent: Dual([t, rate * by_s, rate * by_across]), end }
     }
 }
 
@@ -251,35 +259,72 @@ fn tangent_of<T: Number>([from, to]: [&Sight<T>; 2], edge: &Edge<T>, motion: &Mo
 }
 
 /// An edge that ends at the apex.
-struct AtApex<T> {
+#[derive(Clone, Copy)]
+pub(super) struct AtApex<T> {
+    /// Whether it begins there, or ends.
+    pub touch: Touch,
     /// What all other edges are multiplied by, if the chart touches it.
-    factor: Option<Dual<T>>,
+    pub factor: Option<Dual<T>>,
     /// Its half tangent, times the factor.
-    tangent: Dual<T>,
+    pub tangent: Dual<T>,
     /// Its other end.
-    end: usize,
+    pub end: usize,
+}
+
+/// Sums over vertices, times the factor of the edge that is touched, and, with an apex, `s`.
+pub(crate) struct Sums<T> {
+    /// Of weights.
+    pub total: Dual<T>,
+    /// Of weights times residuals, and of what speeds add.
+    pub numerator: [Dual<T>; 2],
 }
 
 /// Where one looks from.
-struct View<T> {
+pub(crate) struct View<T> {
     /// Less the apex.
-    position: Vector<T>,
-    s: T,
+    pub(super) position: Vector<T>,
+    /// 1 without an apex; then the two vectors below are the axes of the plane.
+    pub(super) s: T,
     /// `e`, and `q - p - skew e`.
-    along: Vector<T>,
+    pub(super) along: Vector<T>,
     across: Vector<T>,
     skew: T,
     /// Of `e`.
-    length: Dual<T>,
+    pub(super) length: Dual<T>,
+    /// Both edges at the apex, if that is a vertex.
+    pub(super) edges: Vec<AtApex<T>>,
 }
 
 impl<T: Number> View<T> {
-    /// A function of the plane by `s` and `λ`.
-    fn chain(&self, value: T, gradient: Vector<T>) -> Dual<T> {
+    /// A function of the plane by `s` and `λ`, or by the coordinates of the plane.
+    pub(super) fn chain(&self, value: T, gradient: Vector<T>) -> Dual<T> {
         Dual([value, dot(self.along, gradient), self.s * dot(self.across, gradient)])
+    }
+
+    /// `s`, with an apex.
+    pub(super) fn along_dual(&self) -> Dual<T> {
+        Dual([self.s, T::of(1.0), (self.skew * self.s).opposite()])
+    }
+
+    /// What everything is multiplied by.
+    pub(super) fn factor(&self) -> Option<Dual<T>> {
+        self.edges.iter().find_map(|edge| edge.factor)
+    }
+
+    /// The half tangent of an edge at the apex, times the factor.
+    pub(super) fn tangent(&self, edge: &AtApex<T>) -> Dual<T> {
+        edge.tangent.with(self.factor().filter(|_| edge.factor.is_none()))
+    }
+
+    /// What a quotient of sums adds to the images of both vectors under the derivative.
+    pub fn columns(&self, rest: [Dual<T>; 2]) -> [Vector<T>; 2] {
+        if self.edges.is_empty() {
+            return [1, 2].map(|k| rest.map(|c| c.0[k]));
+        }
+        [rest.map(|c| c.0[0] + self.s * c.0[1]), rest.map(|c| c.0[2] - self.skew * c.0[0])]
     }
 }
 
-fn apply<T: Number>(linear: &Linear, vector: Vector<T>) -> Vector<T> {
+pub(super) fn apply<T: Number>(linear: &Linear, vector: Vector<T>) -> Vector<T> {
     std::array::from_fn(|k| vector[0].by(linear[k][0]) + vector[1].by(linear[k][1]))
 }

@@ -6,11 +6,11 @@ use super::frame::Frame;
 use super::number::Form;
 
 /// A linear map near the map: what of it is reproduced exactly is not left to sums of enclosures.
-pub(super) type Linear = [[f64; 2]; 2];
+pub(crate) type Linear = [[f64; 2]; 2];
 
 /// What makes enclosures narrow; nothing depends on it in exact arithmetic.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Guide {
+pub(crate) struct Guide {
     /// A linear map that takes vertices nearby close to their images,
     pub linear: Linear,
     /// after which one goes by so much further: nothing, if the apex is a vertex.

@@ -35,6 +35,16 @@ pub(super) fn invert(
     image: Enclosed2,
 ) -> Result<Enclosed2, InverseError> {
     let point = newton(step, backward, source, image.point).ok_or(InverseError::NotFound)?;
+    prove_near(step, target, point, image)
+}
+
+/// That the preimage of what is enclosed is near a point.
+pub(crate) fn prove_near(
+    step: &Step,
+    target: &PlanarDomain,
+    point: Point2,
+    image: Enclosed2,
+) -> Result<Enclosed2, InverseError> {
     let there = step.enclose(point.map(Form::of));
     let wanted = image.point.map(|c| Form::within(image.radius, c));
     let both: Region = std::array::from_fn(|k| there[k].hull(wanted[k]));
@@ -59,7 +69,7 @@ pub(super) fn invert(
 
 /// How many edges of a domain a box may meet, if it is so few that its part of the domain is connected by paths of twice
 /// its diameter: none or one, when the part is convex, or two at a vertex in the box, which is seen from everywhere in it.
-pub(crate) fn meeting_edges(domain: &PlanarDomain, at: [Form; 2]) -> Option<usize> {
+fn meeting_edges(domain: &PlanarDomain, at: [Form; 2]) -> Option<usize> {
     let [low, high]: [Point2; 2] = [at.map(Form::low), at.map(Form::high)];
     let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
     let meets = |[p, q]: &[Point2; 2]| {

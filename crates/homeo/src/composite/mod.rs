@@ -13,11 +13,12 @@
 //! See:         `docs/theory/composite.md`.
 
 mod bound;
-mod chart;
+pub(crate) mod chart;
 mod evaluate;
-mod frame;
-mod guide;
+pub(crate) mod frame;
+pub(crate) mod guide;
 pub(crate) mod invert;
+pub(crate) mod line;
 mod map;
 pub(crate) mod number;
 mod partition;
