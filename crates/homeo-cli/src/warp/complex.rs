@@ -1,7 +1,6 @@
 //! Complex maps with speeds.
 
 use homeo::complex::{ComplexError, ComplexInfo, ComplexMap, ComplexParams};
-use homeo::composite::triangulate;
 use homeo_core::planar::DomainPair;
 use serde_json::json;
 
@@ -11,7 +10,7 @@ use crate::session::Session;
 /// The degree of speeds, unless another is asked for.
 pub const DEGREE: usize = 4;
 
-/// The map of the best speeds found, with a tiling of its source at hand, or why there is none.
+/// The map of the best speeds found, or why there is none.
 pub fn map(
     session: &Session,
     pair: &DomainPair,
@@ -26,8 +25,6 @@ pub fn map(
         let what = "In one step a hole does not turn by more than a half turn: take --method mean-value or harmonic";
         return Err(refused(what.to_owned()));
     }
-    // The certificate needs one.
-    triangulate(&pair.source).map_err(|error| refused(format!("The source cannot be tiled: {error}")))?;
     ComplexMap::build(pair, &ComplexParams { degree, ..ComplexParams::default() }, session).map_err(|error| {
         let failure = refused(format!("{error} (--method mean-value)"));
         match error {
@@ -36,6 +33,7 @@ pub fn map(
                 failure.with("fold", json!({"point": point, "determinant_at_most": at_most}))
             }
             ComplexError::Undecided { point } => failure.with("undecided_near", json!(point)),
+            ComplexError::Triangles(_) => failure,
             ComplexError::Speeds(_) => Failure::usage(error.to_string()),
         }
     })
