@@ -140,13 +140,12 @@ impl ComplexMap {
         progress.stage("speeds");
         let domains = [&pair.source, &pair.target];
         let mut search = Search::new(&outline, domains, params.degree, params.grid.max(1), &is_cancelled);
-        if is_cancelled() {
-            return Err(ComplexError::Stopped);
-        }
-        let linear = search.least();
         let mut rounds = 0;
         loop {
             search.ascend(&is_cancelled);
+            if is_cancelled() {
+                return Err(ComplexError::Stopped);
+            }
             let speeds = search.speeds()?;
             progress.stage("proof");
             let problem = Problem { outline: &outline, domain: &pair.source, speeds: &speeds };
@@ -160,8 +159,7 @@ impl ComplexMap {
             }
             let (point, error) = match verdict {
                 JacobianVerdict::Positive { least, boxes } => {
-                    let sampled = [search.least(), linear].map(|share| share * search.ratio());
-                    let info = ComplexInfo { least_determinant: least, sampled, boxes, rounds };
+                    let info = ComplexInfo { least_determinant: least, sampled: search.sampled(), boxes, rounds };
                     return Ok((Self::of(pair, outline.clone(), speeds), info));
                 }
                 JacobianVerdict::Negative { point, at_most, .. } => (point, ComplexError::Folds { point, at_most }),

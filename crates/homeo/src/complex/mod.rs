@@ -12,6 +12,7 @@
 //! Fails when:  no speeds of the degree are found that make it positive, or the proof reaches its limit -> [`ComplexError`].
 //! See:         `docs/theory/complex.md`.
 
+mod ascent;
 mod bound;
 mod chart;
 mod dual;
@@ -21,6 +22,7 @@ mod guide;
 mod invert;
 mod map;
 mod optimize;
+mod sample;
 mod speed;
 #[cfg(test)]
 mod tests;
