@@ -17,8 +17,6 @@ use crate::progress::Progress;
 pub struct ComplexParams {
     /// Degree of the speeds, from 2 to 8; 1 has nothing to choose.
     pub degree: usize,
-    /// Samples along the longer side of the domain, for the search.
-    pub grid: usize,
     /// So often a point where the proof failed is added to the samples, and the search goes on.
     pub rounds: usize,
     /// Limits of the proof.
@@ -28,7 +26,7 @@ pub struct ComplexParams {
 impl Default for ComplexParams {
     fn default() -> Self {
         let limits = JacobianLimits { boxes_per_chart: 20_000, ..JacobianLimits::default() };
-        Self { degree: 4, grid: 24, rounds: 4, limits }
+        Self { degree: 4, rounds: 4, limits }
     }
 }
 
@@ -144,14 +142,13 @@ impl ComplexMap {
         let tiling = triangulate(&pair.source)?;
         let step = plain_step(pair, &tiling);
         let domains = [&pair.source, &pair.target];
-        let mut search = Search::new(&step, domains, params.degree, params.grid.max(1), &is_cancelled);
-        if is_cancelled() {
-            return Err(ComplexError::Stopped);
-        }
-        let linear = search.least();
+        let mut search = Search::new(&step, domains, params.degree, &is_cancelled);
         let mut rounds = 0;
         loop {
             search.ascend(&is_cancelled);
+            if is_cancelled() {
+                return Err(ComplexError::Stopped);
+            }
             let speeds = search.speeds()?;
             progress.stage("proof");
             let proved = fitting(step.clone(), &speeds)?;
@@ -166,8 +163,7 @@ impl ComplexMap {
             }
             let (point, error) = match verdict {
                 JacobianVerdict::Positive { least, boxes } => {
-                    let sampled = [search.least(), linear].map(|share| share * search.ratio());
-                    let info = ComplexInfo { least_determinant: least, sampled, boxes, rounds };
+                    let info = ComplexInfo { least_determinant: least, sampled: search.sampled(), boxes, rounds };
                     return Ok((Self::of(pair, tiling, proved, speeds), info));
                 }
                 JacobianVerdict::Negative { point, at_most, .. } => (point, ComplexError::Folds { point, at_most }),

@@ -12,10 +12,12 @@
 //! Fails when:  no speeds of the degree are found that make it positive, or the proof reaches its limit -> [`ComplexError`].
 //! See:         `docs/theory/complex.md`.
 
+mod ascent;
 mod error;
 mod invert;
 mod map;
 mod optimize;
+mod sample;
 mod speed;
 #[cfg(test)]
 mod tests;

@@ -1,28 +1,25 @@
-//! Speeds of the largest least determinant at samples: entropic mirror ascent.
+//! Speeds of the largest least determinant.
 //!
 //! Derivatives of the map are linear in the deviations of control values from those of linear speeds, so determinants are
 //! quadratic; their parts are computed once for each sample. The least of them is made smooth,
 //! `-1/β log mean exp(-β det)`, with `β` growing by stages. Control values are sums of increments, which are positive and
-//! add up to 1 for each edge: a step multiplies each by the exponential of its slope and divides by the sum (Beck,
-//! Teboulle 2003), so monotony holds at every step without a projection. What it finds is a proposal, and proved apart.
+//! add up to 1 for each edge: a softmax of variables that are free, so monotony holds at every step. After each stage places
+//! between samples where the determinant is less become samples, too. What is found is a proposal, and proved apart.
 
 use super::SpeedError;
+use super::ascent;
+use super::sample::{COARSE, FINE, Place, places};
 use super::speed::{EdgeSpeeds, power_form};
-use crate::composite::chart::{Chart, Step};
+use crate::composite::chart::Step;
 use crate::composite::frame::Frame;
 use crate::composite::guide::Guide;
 use crate::composite::line::Line;
 use homeo_core::planar::{PlanarDomain, Point2};
 
-/// Sharpness of the smooth minimum by stages, in units of one over the ratio of areas, and steps for each.
+/// Sharpness of the smooth minimum by stages, in units of one over the ratio of areas.
 const STAGES: [f64; 6] = [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0];
-const STEPS: usize = 150;
 /// No increment is less than this part of that of linear speeds, lest rounding make two control values one.
 const LEAST_INCREMENT: f64 = 1e-4;
-/// A chart of a vertex is sampled here, in its own coordinates.
-const CORNER: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 0.5], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
-/// An edge is sampled at multiples of one over this.
-const EDGE: usize = 16;
 
 type Pair = [[f64; 2]; 2];
 
@@ -45,8 +42,8 @@ pub(super) struct Search<'a> {
     samples: Vec<Sample>,
     /// Of each edge, for each inner control value: what a deviation of it adds.
     basis: Vec<Vec<Line<f64>>>,
-    /// Of each edge `d` positive numbers that add up to 1.
-    increments: Vec<Vec<f64>>,
+    /// `d` for each edge; zeros make linear speeds.
+    free: Vec<f64>,
 }
 
 fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -54,61 +51,35 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl<'a> Search<'a> {
-    /// From linear speeds, with samples in the charts of vertices, on edges and on a grid of so many points along the longer side; with fewer
-    /// if it is cancelled.
+    /// From linear speeds, with samples in all charts; in fewer if it is cancelled.
     pub fn new(
         step: &'a Step,
         domains: [&PlanarDomain; 2],
         degree: usize,
-        grid: usize,
         is_cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Self {
         let [source, target] = domains.map(area);
         let count = step.points.len();
-        let increments = vec![vec![1.0 / degree as f64; degree]; count];
         let unit = |k: usize| (0..degree - 1).map(|l| f64::from(u8::from(k == l))).collect::<Vec<f64>>();
         let quotients: Vec<Vec<f64>> = (0..degree - 1).map(|k| power_form(degree, &unit(k))).collect();
         let lines = |edge: usize| quotients.iter().map(|quotient| step.line(edge, quotient.clone())).collect();
         let basis = (0..count).map(lines).collect();
-        let mut this = Self { step, degree, ratio: target / source, samples: Vec::new(), basis, increments };
-        for chart in step.charts.iter().filter(|chart| step.is_vertex(chart.corners[0])) {
-            if is_cancelled() {
-                return this;
-            }
-            CORNER.into_iter().for_each(|at| this.add(chart, at));
-        }
-        for [p, q] in domains[0].edges() {
-            if is_cancelled() {
-                return this;
-            }
-            for share in (1..EDGE).map(|k| k as f64 / EDGE as f64) {
-                this.insist([0, 1].map(|k| p[k] + share * (q[k] - p[k])));
-            }
-        }
-        let [low, high] = domains[0].bounds();
-        let step = (high[0] - low[0]).max(high[1] - low[1]) / grid as f64;
-        let count = |axis: usize| ((high[axis] - low[axis]) / step).ceil() as usize;
-        for (x, y) in (0..count(0)).flat_map(|x| (0..count(1)).map(move |y| (x, y))) {
-            let point = [low[0] + (x as f64 + 0.5) * step, low[1] + (y as f64 + 0.5) * step];
-            if is_cancelled() {
-                return this;
-            }
-            if domains[0].contains(point) {
-                this.insist(point);
-            }
+        let free = vec![0.0; degree * count];
+        let mut this = Self { step, degree, ratio: target / source, samples: Vec::new(), basis, free };
+        for chart in step.charts.iter().take_while(|_| !is_cancelled()) {
+            places(chart, COARSE).for_each(|place| this.add(&place));
         }
         this
     }
 
     /// One more sample, where the search was too kind.
     pub fn insist(&mut self, point: Point2) {
-        let (chart, at) = self.step.locate(point);
-        self.add(chart, at);
+        self.add(&Place::of(self.step, point));
     }
 
-    fn add(&mut self, chart: &Chart, [s, lambda]: [f64; 2]) {
-        let mut frame = Frame::<f64>::new(self.step, chart);
-        let view = frame.look(s, lambda);
+    fn add(&mut self, place: &Place) {
+        let mut frame = Frame::<f64>::new(self.step, place.chart);
+        let view = frame.look(place.at[0], place.at[1]);
         let sums = frame.sums(&view, &Guide::NONE);
         let plain = frame.local(&view, &sums, &Guide::NONE);
         let response = |(edge, line): (usize, &Line<f64>)| {
@@ -119,21 +90,59 @@ impl<'a> Search<'a> {
         let factor = 1.0 / (plain.turn * self.ratio);
         let is_good = plain.columns.iter().chain(by.iter().flatten()).flatten().all(|x| x.is_finite());
         if is_good && factor.is_finite() {
-            self.samples.push(Sample { point: self.step.place(chart, [s, lambda]), along: plain.columns, by, factor });
+            self.samples.push(Sample { point: place.point(self.step), along: plain.columns, by, factor });
         }
     }
 
-    /// Deviations of all control values, edge by edge.
-    fn deviations(&self, increments: &[Vec<f64>]) -> Vec<f64> {
-        let mut all = Vec::with_capacity(increments.len() * (self.degree - 1));
-        for edge in increments {
-            let mut sum = 0.0;
-            for (k, increment) in edge[..self.degree - 1].iter().enumerate() {
-                sum += increment;
-                all.push(sum - (k + 1) as f64 / self.degree as f64);
-            }
+    /// Adds where the determinant is less than at all samples: of each chart the worst place of many. Returns the least
+    /// determinant seen, over the ratio of areas.
+    fn refine(&mut self, is_cancelled: &(dyn Fn() -> bool + Sync)) -> f64 {
+        let least = self.least();
+        let Ok(speeds) = self.speeds() else { return f64::NEG_INFINITY };
+        let step = self.step.clone().with_speeds(speeds);
+        let mut found: Vec<(f64, Place<'a>)> = Vec::new();
+        for chart in self.step.charts.iter().take_while(|_| !is_cancelled()) {
+            let valued = places(chart, FINE).map(|place| (place.determinant(&step) / self.ratio, place));
+            found.extend(valued.filter(|(value, _)| *value < least).min_by(|a, b| a.0.total_cmp(&b.0)));
         }
-        all
+        found.iter().for_each(|(_, place)| self.add(place));
+        found.iter().map(|(value, _)| *value).fold(least, f64::min)
+    }
+
+    /// Of each edge `d` positive numbers that add up to 1: the softmax of its variables, above the least increment.
+    fn increments(&self, free: &[f64]) -> Vec<f64> {
+        let [floor, scale] = self.range();
+        let edge = |own: &[f64]| {
+            let most = own.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let grown: Vec<f64> = own.iter().map(|x| (x - most).exp()).collect();
+            let total: f64 = grown.iter().sum();
+            grown.into_iter().map(move |x| floor + scale * x / total)
+        };
+        free.chunks(self.degree).flat_map(edge).collect()
+    }
+
+    /// The least increment, and what all increments of an edge share beyond it.
+    fn range(&self) -> [f64; 2] {
+        [LEAST_INCREMENT / self.degree as f64, 1.0 - LEAST_INCREMENT]
+    }
+
+    /// Inner control values of each edge.
+    fn control_values(&self, increments: &[f64]) -> Vec<Vec<f64>> {
+        let sums = |edge: &[f64]| {
+            let sum = |sum: &mut f64, d: &f64| {
+                *sum += d;
+                Some(*sum)
+            };
+            edge[..self.degree - 1].iter().scan(0.0, sum).collect()
+        };
+        increments.chunks(self.degree).map(sums).collect()
+    }
+
+    /// Deviations of all control values, edge by edge.
+    fn deviations(&self, free: &[f64]) -> Vec<f64> {
+        let values = self.control_values(&self.increments(free));
+        let off = |(k, value): (usize, &f64)| value - (k + 1) as f64 / self.degree as f64;
+        values.iter().flat_map(|edge| edge.iter().enumerate().map(off)).collect()
     }
 
     /// Of each sample the derivatives, and the determinant over the ratio of areas.
@@ -150,7 +159,7 @@ impl<'a> Search<'a> {
 
     /// Samples at which the determinant is negative, the least one first.
     pub fn folds(&self) -> Vec<Point2> {
-        let sent = self.sent(&self.deviations(&self.increments));
+        let sent = self.sent(&self.deviations(&self.free));
         let mut found: Vec<(f64, Point2)> =
             sent.iter().zip(&self.samples).map(|((_, value), sample)| (*value, sample.point)).collect();
         found.retain(|(value, _)| *value < 0.0);
@@ -159,72 +168,66 @@ impl<'a> Search<'a> {
     }
 
     /// The smooth minimum, and its slopes by deviations.
-    fn value(&self, deviations: &[f64], sharpness: f64, slopes: Option<&mut [f64]>) -> f64 {
+    fn value(&self, deviations: &[f64], sharpness: f64) -> (f64, Vec<f64>) {
         let sent = self.sent(deviations);
         let least = sent.iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
-        let weight = |value: f64| (-sharpness * (value - least)).exp();
-        let total: f64 = sent.iter().map(|(_, value)| weight(*value)).sum();
-        if let Some(slopes) = slopes {
-            slopes.fill(0.0);
-            for (sample, (along, value)) in self.samples.iter().zip(&sent) {
-                let share = weight(*value) / total * sample.factor;
-                for (slope, by) in slopes.iter_mut().zip(&sample.by) {
-                    *slope += share * (cross(by[0], along[1]) + cross(along[0], by[1]));
-                }
+        let weights: Vec<f64> = sent.iter().map(|(_, value)| (-sharpness * (value - least)).exp()).collect();
+        let total: f64 = weights.iter().sum();
+        let mut slopes = vec![0.0; deviations.len()];
+        // What is below rounding adds nothing.
+        let counts = self.samples.iter().zip(&sent).zip(&weights).filter(|(_, weight)| **weight > f64::EPSILON);
+        for ((sample, (along, _)), weight) in counts {
+            let share = weight / total * sample.factor;
+            for (slope, by) in slopes.iter_mut().zip(&sample.by) {
+                *slope += share * (cross(by[0], along[1]) + cross(along[0], by[1]));
             }
         }
-        least - (total / self.samples.len() as f64).ln() / sharpness
-    }
-
-    /// The ratio of areas, in which values are given.
-    pub fn ratio(&self) -> f64 {
-        self.ratio
+        (least - (total / self.samples.len() as f64).ln() / sharpness, slopes)
     }
 
     /// The least determinant at samples, over the ratio of areas.
-    pub fn least(&self) -> f64 {
-        self.value(&self.deviations(&self.increments), 1e12, None)
+    fn least(&self) -> f64 {
+        self.least_of(&self.free)
+    }
+
+    fn least_of(&self, free: &[f64]) -> f64 {
+        self.sent(&self.deviations(free)).iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The least determinant at samples, and that of linear speeds.
+    pub fn sampled(&self) -> [f64; 2] {
+        [self.least(), self.least_of(&vec![0.0; self.free.len()])].map(|share| share * self.ratio)
     }
 
     /// Ascends, until it was done or cancelled.
     pub fn ascend(&mut self, is_cancelled: &(dyn Fn() -> bool + Sync)) {
-        let mut slopes = vec![0.0; self.step.points.len() * (self.degree - 1)];
+        let mut best = (f64::NEG_INFINITY, self.free.clone());
         for sharpness in STAGES {
-            let mut rate = 0.1;
-            for _ in 0..STEPS {
-                if is_cancelled() {
-                    return;
-                }
-                let here = self.value(&self.deviations(&self.increments), sharpness, Some(&mut slopes));
-                let better = (0..20).map(|halvings| rate * 0.5f64.powi(halvings)).find_map(|rate| {
-                    let next = self.stepped(&slopes, rate);
-                    let value = self.value(&self.deviations(&next), sharpness, None);
-                    (value > here).then_some((next, rate))
-                });
-                let Some((next, taken)) = better else { break };
-                self.increments = next;
-                rate = 2.0 * taken;
+            self.free = ascent::ascend(self, &self.free, sharpness, is_cancelled);
+            let least = self.refine(is_cancelled);
+            if least > best.0 {
+                best = (least, self.free.clone());
             }
         }
+        self.free = best.1;
     }
 
-    fn stepped(&self, slopes: &[f64], rate: f64) -> Vec<Vec<f64>> {
+    /// The smooth minimum for some free variables, and its slopes by them.
+    pub fn rise(&self, free: &[f64], sharpness: f64) -> (f64, Vec<f64>) {
         let inner = self.degree - 1;
-        let edge = |(i, own): (usize, &Vec<f64>)| {
+        let (value, by_deviation) = self.value(&self.deviations(free), sharpness);
+        let (increments, [floor, scale]) = (self.increments(free), self.range());
+        let mut slopes = vec![0.0; free.len()];
+        for (edge, slopes) in slopes.chunks_mut(self.degree).enumerate() {
             // By an increment all control values from its own on grow, but not the last one, which is 1.
-            let mut sum = 0.0;
-            let mut exponents = vec![0.0; self.degree];
             for k in (0..inner).rev() {
-                sum += slopes[i * inner + k];
-                exponents[k] = sum;
+                slopes[k] = slopes[k + 1] + by_deviation[edge * inner + k];
             }
-            let most = exponents.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let floor = LEAST_INCREMENT / self.degree as f64;
-            let grown: Vec<f64> = own.iter().zip(&exponents).map(|(d, e)| d * (rate * (e - most)).exp()).collect();
-            let total: f64 = grown.iter().sum();
-            grown.iter().map(|d| floor + (1.0 - self.degree as f64 * floor) * d / total).collect()
-        };
-        self.increments.iter().enumerate().map(edge).collect()
+            let own = &increments[edge * self.degree..][..self.degree];
+            let mean: f64 = own.iter().zip(&*slopes).map(|(d, slope)| (d - floor) / scale * slope).sum();
+            slopes.iter_mut().zip(own).for_each(|(slope, d)| *slope = (d - floor) * (*slope - mean));
+        }
+        (value, slopes)
     }
 
     /// What was found.
@@ -232,16 +235,7 @@ impl<'a> Search<'a> {
     /// # Errors
     /// None is known; control values are checked.
     pub fn speeds(&self) -> Result<EdgeSpeeds, SpeedError> {
-        let sums = |edge: &Vec<f64>| {
-            edge[..self.degree - 1]
-                .iter()
-                .scan(0.0, |sum, d| {
-                    *sum += d;
-                    Some(*sum)
-                })
-                .collect()
-        };
-        EdgeSpeeds::new(self.degree, self.increments.iter().map(sums).collect())
+        EdgeSpeeds::new(self.degree, self.control_values(&self.increments(&self.free)))
     }
 }
 
