@@ -32,7 +32,7 @@ pub(crate) enum MapData {
     /// Images of the vertices.
     PiecewiseLinear(Vec<Point>),
     Shell(ShellData),
-    Harmonic(HarmonicData),
+    Harmonic(Box<HarmonicData>),
     Composite(CompositeData),
     Complex(ComplexData),
     Hyperbolic(HyperbolicData),
@@ -125,7 +125,7 @@ impl MapFile {
         if manifest.kind == Kind::CompositeHarmonic {
             let (data, positions) = HarmonicData::read(&mut archive, &manifest)?;
             all_taken(&archive)?;
-            let data = MapData::Harmonic(data);
+            let data = MapData::Harmonic(Box::new(data));
             return Ok(MapFile { manifest, positions, cells: vec![], refinement: None, data });
         }
         if manifest.kind == Kind::CompositeMeanValue {

@@ -20,6 +20,13 @@ fn square_with(holes: impl IntoIterator<Item = Vec<Point2>>) -> Rings {
     square().into_iter().chain(holes).collect()
 }
 
+/// A map with few triangles.
+pub fn small_file() -> Vec<u8> {
+    let rings = |turn: f64| square_with([hole(3, [0.3, 0.5], 0.15, 0.0), hole(3, [0.7, 0.5], 0.15, turn)]);
+    let params = HarmonicParams { triangles: 4, ..HarmonicParams::default() };
+    bytes_of(&harmonic_map(&pair(rings(0.0), rings(1.0)), params, &Silent).expect("a map"))
+}
+
 #[test]
 fn two_holes_move_turn_and_change_their_size() {
     let source = square_with([hole(3, [0.3, 0.5], 0.15, 0.0), hole(4, [0.7, 0.5], 0.1, 0.3)]);

@@ -13,8 +13,13 @@ const EQUAL_PART: f64 = 0.1;
 
 /// The middle of a pair, and how far the inner ring begins ahead of the outer one, in turns.
 pub(super) fn middle(pair: &DomainPair, shape: MiddleShape, ahead: f64) -> Middle {
-    let shares: Vec<Vec<f64>> =
-        pair.source.rings().iter().zip(pair.target.rings()).map(|(s, t)| shares([s, t].map(lengths), shape)).collect();
+    let shares: Vec<Vec<f64>> = pair
+        .source
+        .rings()
+        .iter()
+        .zip(pair.target.rings())
+        .map(|(s, t)| shares([s, t].map(|ring| lengths(ring)), shape))
+        .collect();
     if let [shares] = &shares[..] {
         return Middle::new(vec![on_circle(shares)]);
     }
@@ -33,7 +38,7 @@ fn on_circle(shares: &[f64]) -> Vec<Point2> {
 }
 
 /// Of the edges of a ring.
-fn lengths(ring: &Vec<Point2>) -> Vec<f64> {
+fn lengths(ring: &[Point2]) -> Vec<f64> {
     let length = |i: usize| {
         let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
         (b[0] - a[0]).hypot(b[1] - a[1])
