@@ -179,8 +179,8 @@ mod tests {
         let open = ring.opened(&[0, 1, 2, 0, 3, 4, 5, 3]).unwrap();
         assert_eq!(open.triangles, [[0, 1, 7], [1, 6, 7], [1, 2, 6], [2, 5, 6], [2, 3, 5], [3, 4, 5]]);
         assert_eq!((open.boundary[3], open.boundary[7]), ([0.0, 0.0], [2.0, 2.0]));
-        // Without the cut, and with one that is no edge.
-        assert!(ring.opened(&[0, 1, 2]).is_none());
+        // The wrong way round the hole, and along a cut that is no edge.
+        assert!(ring.opened(&[0, 1, 2, 0, 3, 5, 4, 3]).is_none());
         assert!(ring.opened(&[0, 1, 2, 0, 5, 3, 4, 5]).is_none());
     }
 }
