@@ -602,8 +602,8 @@ pub struct ReportArgs {
   homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json --method complex --degree 4 -o one_step.csv
   homeo warp testdata/meshes/spot.mesh --from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj -o twisted.vtu
 
-Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}; a pair is
-{\"source\": ..., \"target\": ...}. Or they are the shapes of an SVG drawing, in its order, in pixels. Vertices correspond by number. What lies outside the target becomes
+Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}, with several
+{\"outer\": [...], \"holes\": [[...], ...]}; a pair is {\"source\": ..., \"target\": ...}. Or they are the shapes of an SVG drawing, in its order, in pixels. Vertices correspond by number. What lies outside the target becomes
 transparent. With --landmarks the map is affine on the triangles between them; landmarks whose triangles
 turn over would fold the picture and are refused by name. The map's certificate is checked before anything is written; `homeo verify` checks it again.")]
 pub struct WarpArgs {
@@ -666,7 +666,7 @@ pub struct PolygonArgs {
     /// Harmonic maps: the convex polygon between source and target [default: lengths]
     #[arg(long, value_enum, value_name = "SHAPE")]
     pub middle: Option<MiddleName>,
-    /// Polygons with a hole: by how much its rim turns [default: the pair's `winding_hint`, or as little as possible]
+    /// Polygons with one hole, with --method mean-value any number: by how much the rim turns [default: the pair's `winding_hint`, or as little as possible]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub turn: Option<f64>,
     /// How polygons or cages move, for the frames of a morph and for mean value maps; cages: straight or angles
@@ -861,7 +861,7 @@ pub enum MiddleName {
     Lengths,
     /// A regular polygon
     Regular,
-    /// Begun as lengths, then moved so that the map keeps angles better; with a hole as lengths
+    /// Begun as lengths, then moved so that the map keeps angles better; with one hole as lengths
     Optimized,
 }
 

@@ -103,6 +103,30 @@ fn holes_turn_in_every_frame_of_a_morph() {
     assert!(turns.iter().all(|turn| (turn - turns[0]).abs() < 1e-9) && turns[0] > 90.0, "{turns:?}");
 }
 
+/// Two holes that change places, as a pair file and as two files; the path of a morph does as well.
+#[test]
+fn several_holes_move() {
+    let folder = folder();
+    let hole = |x: f64, y: f64| format!("[[{x}, {y}], [{x}, {}], [{}, {y}]]", y + 12.0, x + 12.0);
+    let domain =
+        |a: String, b: String| format!("{{\"outer\": [[2, 2], [60, 2], [60, 60], [2, 60]], \"holes\": [{a}, {b}]}}");
+    let (a, b) = (domain(hole(10.0, 24.0), hole(40.0, 24.0)), domain(hole(24.0, 40.0), hole(28.0, 10.0)));
+    folder.write("pair.json", format!("{{\"source\": {a}, \"target\": {b}, \"winding_hint\": 30}}"));
+    folder.write("a.json", a).write("b.json", b).write("points.csv", "x,y\n5,5\n10,24\n52,24\n59,59\n");
+    let line = "warp points.csv --triangles 500 -o out.csv --map out.homeo --json";
+    let report = folder.line(&format!("{line} --pair pair.json")).expect(0).json();
+    assert_eq!((&report["target"], &report["certificate"]["holds"]), (&"domain".into(), &true.into()));
+    let points = folder.text("out.csv");
+    assert!(points.contains("\n24.0,40.0\n40.0,10.0\n"), "corners of holes go to corners of holes: {points}");
+    folder.line("verify out.homeo --source a.json").expect(0);
+    folder.line(&format!("{line} --from a.json --to b.json")).expect(0);
+    assert_eq!(folder.text("out.csv"), points);
+    folder.line(&format!("{line} --pair pair.json --turn 360")).expect(2);
+    let morph = "morph testdata/images/checker.png --pair pair.json --frames 4 --triangles 500 -o f.json --json";
+    assert_eq!(folder.line(morph).expect(0).json()["quality"]["frames"], 4);
+    folder.line(&format!("{morph} --turn 360")).expect(2);
+}
+
 #[test]
 fn optimized_middles_are_certified_too() {
     let folder = folder();

@@ -1,12 +1,14 @@
-//! Rules H1-H5: a composite harmonic map is a homeomorphism between planar domains.
+//! Rules H1-H6: a composite harmonic map is a homeomorphism between planar domains.
 //!
 //! *Theorem* (by degree). Let triangles be glued along edges so that every edge has at most two of them, and those with
 //! one form the given closed polygons. If all triangles are counter-clockwise in the plane, and the polygons there wind
 //! once round every point of a domain and not at all round others, the triangles tile the domain, edge to edge. The same
-//! holds on a flat cylinder. Source and target are each tiled by triangles whose images tile one middle, and on every
-//! edge both go linearly to the same segment: so source to middle to target is a homeomorphism, linear on every edge.
+//! holds on a flat cylinder, and for triangles that are glued along seams as well. Source and target are each tiled by
+//! triangles whose images tile one middle, and on every edge both go linearly to the same segment, and so do both sides of
+//! every seam: so source to middle to target is a homeomorphism, linear on every edge.
 //! (Proof: `docs/theory/polygons.md`.)
 
+use crate::circuit::Circuit;
 use crate::map_file::{HalfData, HarmonicData};
 use crate::number::{FINEST_BITS, Point, in_finest_units, orientation_2d};
 use crate::rings::Rings;
@@ -24,26 +26,41 @@ type Exact2 = [IBig; 2];
 /// Applies the rules and counts what was checked.
 pub(crate) fn check_harmonic(data: &HarmonicData) -> Checked<Vec<(&'static str, u64)>> {
     let points = [&data.source_points, &data.target_points, &data.middle_points];
-    let [source, target, middle] = points.map(|points| Rings { points, sizes: &data.ring_sizes });
     let is_finite = |p: &Point| p.iter().all(|x| x.is_finite());
     check(points.into_iter().flatten().all(is_finite), "H1", "a vertex of a polygon is not finite", &[], &[])?;
+    let [source, target] = [points[0], points[1]].map(|points| Rings { points, sizes: &data.ring_sizes });
     source.check_domain("source")?;
     target.check_domain("target")?;
+    let circuit = if data.ring_sizes.len() > 2 { Some(Circuit::new(data)?) } else { None };
+    // Slit open, both domains have one ring, as the middle.
+    let slit_size = [data.middle_points.len() as u32];
+    let sizes = if circuit.is_some() { &slit_size } else { &data.ring_sizes[..] };
+    let middle = Rings { points: &data.middle_points, sizes };
     match data.is_cylinder {
         true => check_cylinder(&middle)?,
         false => middle.check_domain("middle")?,
     }
-    for (name, domain, half) in [("source", &source, &data.halves[0]), ("target", &target, &data.halves[1])] {
-        Half { name, domain, middle: &middle, data: half, is_cylinder: data.is_cylinder }.check()?;
+    for (name, points, data_of_half) in
+        [("source", &data.source_points, &data.halves[0]), ("target", &data.target_points, &data.halves[1])]
+    {
+        let outline = circuit.as_ref().map_or_else(|| points.clone(), |circuit| circuit.outline(points));
+        let domain = &Rings { points: &outline, sizes };
+        let (middle, circuit, is_cylinder) = (&middle, circuit.as_ref(), data.is_cylinder);
+        Half { name, domain, middle, circuit, seam: BTreeMap::new(), data: data_of_half, is_cylinder }.check()?;
     }
     let triangles = data.halves.iter().map(|half| half.triangles.len() as u64 / 3).sum();
     let boundary = data.halves.iter().map(|half| half.boundary.len() as u64 / 3).sum();
-    Ok(vec![
-        ("edges of source, target and middle that meet in common ends only (rule D)", 3 * source.points.len() as u64),
+    let edges = points.map(|points| points.len() as u64).iter().sum();
+    let mut checked = vec![
+        ("edges of source, target and middle that meet in common ends only (rule D)", edges),
         ("points of the triangulations on edges of the polygons (rule H2)", boundary),
         ("triangles, glued along edges and round the polygons (rule H3)", triangles),
         ("triangles that are counter-clockwise, and so are their images (rules H4, H5)", triangles),
-    ])
+    ];
+    if circuit.is_some() {
+        checked.push(("seams with the same points on both sides (rule H6)", 2 * data.seams.len() as u64));
+    }
+    Ok(checked)
 }
 
 /// Rule H1 for a cylinder, whose first coordinate counts modulo 1: the outer ring runs once round at height 0, the inner
@@ -65,21 +82,28 @@ fn check_cylinder(middle: &Rings) -> Checked {
 /// A triangulated domain and its images in the middle.
 struct Half<'a> {
     name: &'static str,
+    /// Its vertices along the rings of the middle.
     domain: &'a Rings<'a>,
     middle: &'a Rings<'a>,
+    circuit: Option<&'a Circuit>,
+    /// Where points inside seams lie.
+    seam: BTreeMap<u32, Point>,
     data: &'a HalfData,
     is_cylinder: bool,
 }
 
 impl Half<'_> {
-    fn check(&self) -> Checked {
+    fn check(&mut self) -> Checked {
         let data = self.data;
         let rule = |holds: bool, rule, message: &str| {
             check(holds, rule, &format!("{message} ({}'s triangulation)", self.name), &[], &[])
         };
-        let finite = data.inner.iter().chain(&data.images).flatten().all(|x| x.is_finite());
+        let finite = data.inner.iter().chain(&data.images).chain(&data.seam_points).flatten().all(|x| x.is_finite());
         rule(finite, "H2", "a vertex is not finite")?;
         let next = self.check_boundary()?;
+        if let Some(circuit) = self.circuit {
+            self.seam = circuit.places(data, self.name)?;
+        }
         let count = next.len() + data.inner.len();
         rule(
             data.triangles.iter().all(|&v| (v as usize) < count),
@@ -178,6 +202,7 @@ impl Half<'_> {
         let boundary = self.data.boundary.as_chunks::<3>().0;
         let inner = if image_of.is_some() { &self.data.images } else { &self.data.inner };
         let doubles = corners.map(|v| match boundary.get(v as usize) {
+            Some(_) if image_of.is_none() && self.seam.contains_key(&v) => Some(self.seam[&v]),
             Some(&[ring, edge, 0]) => Some(self.ring(ring, image_of.is_some())[edge as usize]),
             Some(_) => None,
             None => Some(inner[v as usize - boundary.len()]),
@@ -201,6 +226,9 @@ impl Half<'_> {
         let units = |p: Point| [0, 1].map(|axis| in_finest_units(p[axis]));
         let one_turn = IBig::ONE << FINEST_BITS;
         let boundary = self.data.boundary.as_chunks::<3>().0;
+        if let (Some(&point), None) = (self.seam.get(&vertex), image_of) {
+            return units(point).map(|x| x << SHARE_BITS);
+        }
         let mut point = match boundary.get(vertex as usize) {
             Some(&[ring, edge, share]) => {
                 let points = self.ring(ring, image_of.is_some());

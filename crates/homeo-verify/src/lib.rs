@@ -8,7 +8,7 @@
 //! 2. `complex`, `links`, `number`: neighbours, manifolds, exact signs;
 //! 3. `source` (rules S, 8), `subdivision` (R), `foliation` (1-6, 8), `section` (7), `piecewise_linear` (P, 7);
 //! 4. `triangles`, `shell` (L1-L6, of `docs/theory/shells.md`);
-//! 5. `rings` (D), `harmonic` (H1-H5, of `docs/theory/polygons.md`);
+//! 5. `rings` (D), `harmonic` (H1-H5), `circuit` (H6, of `docs/theory/polygons.md`);
 //! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3 and K3;
 //! 7. `complex_barycentric` (K1-K3, of `docs/theory/complex.md`), `mean_value/speeds`: what speeds add;
 //! 8. `hyperbolic` (Y1-Y8, of `docs/theory/hyperbolic.md`);
@@ -23,6 +23,7 @@ mod affine;
 mod archive;
 mod ball;
 mod bundle;
+mod circuit;
 mod complex;
 mod complex_barycentric;
 mod composite;
@@ -184,6 +185,9 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::Shell if is_immersed => ("shell", "theorem on immersed shells, rules L1-L6 and I1-I4"),
         Kind::Shell if is_embedded => ("shell", "theorem on shells, rules L1-L6, E1 and E2"),
         Kind::Shell => ("shell", "theorem on shells, rules L1-L6"),
+        Kind::CompositeHarmonic if map.manifest.target == Target::Domain => {
+            ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H6")
+        }
         Kind::CompositeHarmonic => ("composite-harmonic", "theorem on composite harmonic maps, rules D and H1-H5"),
         Kind::CompositeMeanValue => ("composite-mean-value", "theorem on composite mean value maps, rules D and C1-C3"),
         Kind::ComplexBarycentric => ("complex-barycentric", "theorem on complex maps with speeds, rules D and K1-K3"),

@@ -149,12 +149,10 @@ impl Manifest {
         readable(is_possible, "only a foliation can reach the disk or the ball")?;
         let is_shell = manifest.kind == Kind::Shell;
         readable(is_shell == manifest.target.is_in_shell(), "kind shell and the targets of shells belong together")?;
-        let is_smooth = matches!(manifest.kind, Kind::CompositeMeanValue | Kind::ComplexBarycentric);
-        let is_planar = is_smooth || manifest.kind == Kind::CompositeHarmonic;
+        let is_planar =
+            matches!(manifest.kind, Kind::CompositeHarmonic | Kind::CompositeMeanValue | Kind::ComplexBarycentric);
         let message = "composite and complex maps and planar targets belong together";
         readable(is_planar == manifest.target.is_planar(), message)?;
-        let is_possible = is_smooth || manifest.target != Target::Domain;
-        readable(is_possible, "only composite mean value maps and complex maps have a target with several holes")?;
         let is_hyperbolic = manifest.kind == Kind::Hyperbolic;
         let is_geodesic = manifest.target.is_geodesic();
         readable(is_hyperbolic == is_geodesic, "kind hyperbolic and the targets of such structures belong together")?;

@@ -32,7 +32,7 @@ pub(crate) enum MapData {
     /// Images of the vertices.
     PiecewiseLinear(Vec<Point>),
     Shell(ShellData),
-    Harmonic(HarmonicData),
+    Harmonic(Box<HarmonicData>),
     Composite(CompositeData),
     Complex(ComplexData),
     Hyperbolic(HyperbolicData),
@@ -67,8 +67,10 @@ pub(crate) struct HarmonicData {
     pub(crate) ring_sizes: Vec<u32>,
     pub(crate) source_points: Vec<Point>,
     pub(crate) target_points: Vec<Point>,
-    /// Where both have their vertices in the middle.
+    /// Where both have their vertices in the middle, or the corners of the circuit.
     pub(crate) middle_points: Vec<Point>,
+    /// Both ends of each seam; empty unless there are several holes.
+    pub(crate) seams: Vec<[u32; 2]>,
     pub(crate) is_cylinder: bool,
     /// Of the source and of the target.
     pub(crate) halves: [HalfData; 2],
@@ -105,6 +107,8 @@ pub(crate) struct TilingData {
 pub(crate) struct HalfData {
     /// Ring, edge and share of each vertex on the boundary.
     pub(crate) boundary: Vec<u32>,
+    /// The points inside seams, seam after seam.
+    pub(crate) seam_points: Vec<Point>,
     pub(crate) inner: Vec<Point>,
     pub(crate) images: Vec<Point>,
     pub(crate) triangles: Vec<u32>,
@@ -121,7 +125,7 @@ impl MapFile {
         if manifest.kind == Kind::CompositeHarmonic {
             let (data, positions) = HarmonicData::read(&mut archive, &manifest)?;
             all_taken(&archive)?;
-            let data = MapData::Harmonic(data);
+            let data = MapData::Harmonic(Box::new(data));
             return Ok(MapFile { manifest, positions, cells: vec![], refinement: None, data });
         }
         if manifest.kind == Kind::CompositeMeanValue {
@@ -329,37 +333,43 @@ impl HarmonicData {
     /// Reads the map; also the vertices of the source as points.
     fn read(archive: &mut Archive, manifest: &Manifest) -> Result<(Self, Vec<Point>), Unreadable> {
         let (source_points, ring_sizes) = read_planar_source(archive, manifest)?;
-        let is_cylinder = manifest.target == Target::Annulus;
-        let count = Some(source_points.len());
-        let target_points = Array::take(archive, "target_points")?.read_points(count, 2)?;
-        let middle_points = Array::take(archive, "middle_points")?.read_points(count, 2)?;
-        let halves = [
-            HalfData::read(archive, HALF_NAMES[0], is_cylinder)?,
-            HalfData::read(archive, HALF_NAMES[1], is_cylinder)?,
-        ];
+        let seams = match manifest.target {
+            Target::Domain => Array::take(archive, "seams")?.read(U4, None, 2)?.as_chunks().0.to_vec(),
+            _ => vec![],
+        };
+        let count = source_points.len();
+        let target_points = Array::take(archive, "target_points")?.read_points(Some(count), 2)?;
+        let middle_points = Array::take(archive, "middle_points")?.read_points(Some(count + 2 * seams.len()), 2)?;
+        let [source, target] = HALF_NAMES.map(|names| HalfData::read(archive, names, manifest.target));
+        let (is_cylinder, halves) = (manifest.target == Target::Annulus, [source?, target?]);
         let positions = source_points.clone();
-        Ok((HarmonicData { ring_sizes, source_points, target_points, middle_points, is_cylinder, halves }, positions))
+        let data = HarmonicData { ring_sizes, source_points, target_points, middle_points, seams, is_cylinder, halves };
+        Ok((data, positions))
     }
 }
 
 /// The arrays of the halves of a composite harmonic map.
-const HALF_NAMES: [[&str; 5]; 2] = [
-    ["source_boundary", "source_inner", "source_images", "source_triangles", "source_shifts"],
-    ["target_boundary", "target_inner", "target_images", "target_triangles", "target_shifts"],
+const HALF_NAMES: [[&str; 6]; 2] = [
+    ["source_boundary", "source_inner", "source_images", "source_triangles", "source_shifts", "source_seam_points"],
+    ["target_boundary", "target_inner", "target_images", "target_triangles", "target_shifts", "target_seam_points"],
 ];
 
 impl HalfData {
-    fn read(archive: &mut Archive, names: [&'static str; 5], is_cylinder: bool) -> Result<Self, Unreadable> {
-        let [boundary, inner, images, triangles, shifts] = names;
+    fn read(archive: &mut Archive, names: [&'static str; 6], target: Target) -> Result<Self, Unreadable> {
+        let [boundary, inner, images, triangles, shifts, seam_points] = names;
         let boundary = Array::take(archive, boundary)?.read(U4, None, 3)?;
         let inner = Array::take(archive, inner)?.read_points(None, 2)?;
         let images = Array::take(archive, images)?.read_points(Some(inner.len()), 2)?;
         let triangles = Array::take(archive, triangles)?.read(U4, None, 3)?;
-        let shifts = match is_cylinder {
-            true => Array::take(archive, shifts)?.read(I1, Some(triangles.len() / 3), 3)?,
-            false => vec![],
+        let shifts = match target {
+            Target::Annulus => Array::take(archive, shifts)?.read(I1, Some(triangles.len() / 3), 3)?,
+            _ => vec![],
         };
-        Ok(HalfData { boundary, inner, images, triangles, shifts })
+        let seam_points = match target {
+            Target::Domain => Array::take(archive, seam_points)?.read_points(None, 2)?,
+            _ => vec![],
+        };
+        Ok(HalfData { boundary, seam_points, inner, images, triangles, shifts })
     }
 }
 

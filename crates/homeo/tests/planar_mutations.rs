@@ -5,12 +5,12 @@
 //! add up to the area, and meet along edges with the same vertices.
 #![allow(clippy::print_stdout)]
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 
 use homeo::certificate::{Provenance, write_harmonic};
 use homeo::construct::harmonic::{HarmonicParams, harmonic_map};
-use homeo::map::{HalfParts, HarmonicMap, Middle, SHARE_BITS};
+use homeo::map::{Circuit, HalfParts, HarmonicMap, Middle, SHARE_BITS};
 use homeo::progress::Silent;
 use homeo_core::number::Rational;
 use homeo_core::planar::{DomainPair, Point2};
@@ -23,16 +23,29 @@ const MUTATIONS: usize = 1_500;
 #[derive(Clone)]
 struct Arrays {
     middle: Vec<Vec<Point2>>,
+    seams: Vec<[u32; 2]>,
     halves: [HalfParts; 2],
 }
 
 impl Arrays {
     fn verdict(&self) -> Result<Verdict, homeo_verify::Unreadable> {
         let [source, target] = self.halves.clone();
-        let map = HarmonicMap::new(Middle::new(self.middle.clone()), source, target);
+        let middle = match self.circuit() {
+            Some(circuit) if !self.seams.is_empty() => Middle::slit(circuit, self.middle[0].clone()),
+            _ => Middle::new(self.middle.clone()),
+        };
+        let map = HarmonicMap::new(middle, source, target);
         let mut bytes = Cursor::new(Vec::new());
         write_harmonic(&map, &Provenance::default(), &mut bytes).expect("memory can be written");
         verify_bytes(bytes.get_ref())
+    }
+
+    fn sizes(&self) -> Vec<usize> {
+        self.halves[0].domain.rings().iter().map(Vec::len).collect()
+    }
+
+    fn circuit(&self) -> Option<Circuit> {
+        Circuit::new(&self.sizes(), &self.seams)
     }
 }
 
@@ -42,13 +55,19 @@ fn maps() -> Vec<(&'static str, Arrays)> {
     let hole = vec![[0.4, 0.4], [0.4, 0.6], [0.6, 0.4]];
     let turned = vec![[0.6, 0.4], [0.4, 0.4], [0.4, 0.6]];
     let with = |hole: &Vec<Point2>| vec![square[0].clone(), hole.clone()];
-    [("polygon", square.clone(), arrow), ("annulus", with(&hole), with(&turned))]
+    let two_holes = |x: f64, y: f64| {
+        let moved = |x: f64| [[x, y], [x, y + 0.2], [x + 0.2, y]].to_vec();
+        vec![square[0].clone(), moved(x), moved(x + 0.4)]
+    };
+    let slit = ("two holes", two_holes(0.2, 0.4), two_holes(0.1, 0.3));
+    [("polygon", square.clone(), arrow), ("annulus", with(&hole), with(&turned)), slit]
         .map(|(name, source, target)| {
             let pair = DomainPair::new(source, target).expect("a pair");
             let params = HarmonicParams { triangles: 6, ..HarmonicParams::default() };
             let map = harmonic_map(&pair, params, &Silent).expect("a map");
             let halves = [map.source_half().parts().clone(), map.target_half().parts().clone()];
-            (name, Arrays { middle: map.middle().rings().to_vec(), halves })
+            let seams = map.middle().circuit().map_or_else(Vec::new, |circuit| circuit.seams().to_vec());
+            (name, Arrays { middle: map.middle().rings().to_vec(), seams, halves })
         })
         .into()
 }
@@ -78,18 +97,22 @@ fn every_mutation_is_rejected_or_harmless() {
         }
     }
     counts.iter().for_each(|(outcome, count)| println!("{count:>6} {outcome}"));
-    for rule in ["H1", "H2", "H3", "H4", "H5"] {
+    for rule in ["H1", "H2", "H3", "H4", "H5", "H6"] {
         let found = counts.get(&format!("refuted by {rule}")).copied().unwrap_or(0);
         assert!(found >= 10, "only {found} mutations fail by {rule}: the test tests little");
     }
     let harmless = counts.get("harmless").copied().unwrap_or(0);
-    assert!((100..2 * MUTATIONS).contains(&harmless), "{harmless} are harmless");
+    assert!((100..3 * MUTATIONS / 2).contains(&harmless), "{harmless} are harmless");
 }
 
 /// What was changed; nothing if this change is none.
 fn mutate(arrays: &mut Arrays, random: &mut Random) -> Option<String> {
     let side = random.below(2);
-    let kind = random.below(13);
+    let kind = random.below(19);
+    if kind > 12 {
+        mutate_seams(arrays, side, kind, random)?;
+        return Some(format!("kind {kind} on side {side}"));
+    }
     let half = &mut arrays.halves[side];
     let rows = half.triangles.len();
     let (t, u, corner) = (random.below(rows), random.below(rows), random.below(3));
@@ -144,6 +167,53 @@ fn mutate(arrays: &mut Arrays, random: &mut Random) -> Option<String> {
     Some(format!("kind {kind} on side {side}, triangle {t}"))
 }
 
+/// Where seams run and what they join.
+fn mutate_seams(arrays: &mut Arrays, side: usize, kind: usize, random: &mut Random) -> Option<()> {
+    let half = &mut arrays.halves[side];
+    let (count, corners) = (half.seam_points.len(), half.domain.vertex_count());
+    if count == 0 {
+        return None;
+    }
+    let (a, b) = (random.below(count), random.below(count));
+    match kind {
+        13 => change(&mut half.seam_points[a], random),
+        14 => half.seam_points.swap(a, b),
+        15 => match random.below(2) {
+            0 => drop(half.seam_points.remove(a)),
+            _ => half.seam_points.push(half.seam_points[a]),
+        },
+        16 => {
+            let seam = random.below(arrays.seams.len());
+            arrays.seams[seam][random.below(2)] = random.below(corners) as u32;
+            // Files with other seams than a tree of them are attacked elsewhere: this library does not write them.
+            arrays.circuit()?;
+        }
+        17 => match random.below(2) {
+            0 => arrays.seams.swap(0, 1),
+            _ => random.pick(&mut arrays.seams)?.swap(0, 1),
+        },
+        _ => {
+            // Both sides alike: a point takes another share.
+            let twins = twins(&arrays.sizes(), &arrays.seams);
+            let half = &mut arrays.halves[side];
+            let inside: Vec<usize> = (0..half.boundary.len())
+                .filter(|&row| half.boundary[row].share > 0 && twins[half.boundary[row].edge as usize].is_some())
+                .collect();
+            let row = inside[random.below(inside.len())];
+            let (share, edge) = (half.boundary[row].share, half.boundary[row].edge);
+            let is_twin = |&k: &usize| {
+                Some(half.boundary[k].edge as usize) == twins[edge as usize]
+                    && half.boundary[k].share + share == 1 << SHARE_BITS
+            };
+            let twin = inside.iter().copied().find(is_twin)?;
+            let new = [share / 2, share + 1, share - 1, 1 << 29][random.below(4)];
+            half.boundary[row].share = new;
+            half.boundary[twin].share = (1 << SHARE_BITS) - new;
+        }
+    }
+    Some(())
+}
+
 /// A little, a lot, or a sign.
 fn change(point: &mut Point2, random: &mut Random) {
     let axis = random.below(2);
@@ -158,12 +228,91 @@ fn change(point: &mut Point2, random: &mut Random) {
 
 type Exact = [Rational; 2];
 
-/// By the oracle: both triangulations tile their domains and the middle, glued alike.
+/// The sides of the walk along a slit domain: where each begins, and the seam that it follows, if it does, and whether back.
+/// Along a ring, and from each end of a seam round what hangs on it.
+fn sides(sizes: &[usize], seams: &[[u32; 2]]) -> Vec<(u32, Option<(usize, bool)>)> {
+    fn around(
+        from: usize,
+        sizes: &[usize],
+        seams: &[[u32; 2]],
+        is_nested: bool,
+        out: &mut Vec<(u32, Option<(usize, bool)>)>,
+    ) {
+        let mut first = 0;
+        let ring = sizes.iter().position(|&size| {
+            first += size;
+            from < first
+        });
+        let size = sizes[ring.expect("the vertex exists")];
+        first -= size;
+        for step in 0..size {
+            out.push(((first + (from - first + step) % size) as u32, None));
+            let to = (first + (from - first + step + 1) % size) as u32;
+            let seam = seams.iter().position(|ends| ends.contains(&to));
+            if let (Some(seam), false) = (seam, is_nested && step + 1 == size) {
+                let is_back = seams[seam][1] == to;
+                let other = seams[seam][usize::from(!is_back)];
+                out.push((to, Some((seam, is_back))));
+                around(other as usize, sizes, seams, true, out);
+                out.push((other, Some((seam, !is_back))));
+            }
+        }
+    }
+    let mut out = Vec::new();
+    around(0, sizes, seams, false, &mut out);
+    out
+}
+
+/// The other side of the seam of each side.
+fn twins(sizes: &[usize], seams: &[[u32; 2]]) -> Vec<Option<usize>> {
+    let sides = sides(sizes, seams);
+    let twin = |seam: Option<(usize, bool)>| {
+        let (number, is_back) = seam?;
+        sides.iter().position(|side| side.1 == Some((number, !is_back)))
+    };
+    sides.iter().map(|side| twin(side.1)).collect()
+}
+
+/// Where the points inside seams lie, if both sides list the same.
+fn on_seams(half: &HalfParts, sides: &[(u32, Option<(usize, bool)>)]) -> Result<BTreeMap<usize, Exact>, String> {
+    let mut listed: BTreeMap<(usize, bool), Vec<(u32, usize)>> = BTreeMap::new();
+    for (row, point) in half.boundary.iter().enumerate().filter(|(_, point)| point.share > 0) {
+        if let Some((seam, is_back)) = sides[point.edge as usize].1 {
+            let share = if is_back { (1 << SHARE_BITS) - point.share } else { point.share };
+            listed.entry((seam, is_back)).or_default().push((share, row));
+        }
+    }
+    listed.values_mut().for_each(|points| points.sort_unstable());
+    let mut places = BTreeMap::new();
+    let mut points = half.seam_points.iter();
+    for (key, there) in listed.iter().filter(|(key, _)| !key.1) {
+        let back = listed.get(&(key.0, true)).ok_or("a seam has one side")?;
+        let shares = |points: &[(u32, usize)]| points.iter().map(|point| point.0).collect::<Vec<_>>();
+        if shares(there) != shares(back) {
+            return Err("the sides of a seam differ".to_owned());
+        }
+        for (a, b) in there.iter().zip(back) {
+            let place = exact(points.next().ok_or("points are missing")?);
+            places.insert(a.1, place.clone());
+            places.insert(b.1, place);
+        }
+    }
+    if points.next().is_some() { Err("there are more points".to_owned()) } else { Ok(places) }
+}
+
+/// By the oracle: both triangulations tile their domains and the middle, glued alike, also along seams.
 fn is_homeomorphism(arrays: &Arrays) -> Result<(), String> {
     let is_cylinder = arrays.middle.len() == 2;
+    let is_slit = !arrays.seams.is_empty();
     let middle: Vec<Vec<Exact>> = arrays.middle.iter().map(|ring| ring.iter().map(exact).collect()).collect();
     for half in &arrays.halves {
-        let domain: Vec<Vec<Exact>> = half.domain.rings().iter().map(|ring| ring.iter().map(exact).collect()).collect();
+        let rings: Vec<Vec<Exact>> = half.domain.rings().iter().map(|ring| ring.iter().map(exact).collect()).collect();
+        let (mut domain, mut seam) = (rings.clone(), BTreeMap::new());
+        if is_slit {
+            let sides = sides(&arrays.sizes(), &arrays.seams);
+            domain = vec![sides.iter().map(|side| rings.concat()[side.0 as usize].clone()).collect()];
+            seam = on_seams(half, &sides)?;
+        }
         let on_edge = |rings: &[Vec<Exact>], k: usize, advance: bool| {
             let point = half.boundary[k];
             let ring = &rings[point.ring as usize];
@@ -176,7 +325,7 @@ fn is_homeomorphism(arrays: &Arrays) -> Result<(), String> {
         };
         let place = |v: u32| match (v as usize).checked_sub(half.boundary.len()) {
             Some(inner) => exact(&half.inner[inner]),
-            None => on_edge(&domain, v as usize, false),
+            None => seam.get(&(v as usize)).cloned().unwrap_or_else(|| on_edge(&domain, v as usize, false)),
         };
         let image = |t: usize, k: usize| {
             let v = half.triangles[t][k] as usize;
@@ -191,7 +340,7 @@ fn is_homeomorphism(arrays: &Arrays) -> Result<(), String> {
         };
         let corners: Vec<[Exact; 3]> = half.triangles.iter().map(|t| t.map(place)).collect();
         let images: Vec<[Exact; 3]> = (0..corners.len()).map(|t| [0, 1, 2].map(|k| image(t, k))).collect();
-        tile(&corners, &area_of(&domain), &[0]).map_err(|what| format!("in the domain {what}"))?;
+        tile(&corners, &area_of(&rings), &[0]).map_err(|what| format!("in the domain {what}"))?;
         // The band between heights 0 and 1 has area 1 for each turn.
         let (area, turns): (Rational, &[i64]) =
             if is_cylinder { (Rational::from(2), &[-2, -1, 0, 1, 2]) } else { (area_of(&middle), &[0]) };
@@ -199,6 +348,9 @@ fn is_homeomorphism(arrays: &Arrays) -> Result<(), String> {
             images.iter().map(|t| if is_cylinder { in_first_turn(t) } else { t.clone() }).collect();
         tile(&together, &area, turns).map_err(|what| format!("in the middle {what}"))?;
         glued_alike(half, &images, is_cylinder)?;
+        if is_slit {
+            boundary_is_open(half)?;
+        }
     }
     Ok(())
 }
@@ -282,6 +434,14 @@ fn glued_alike(half: &HalfParts, images: &[[Exact; 3]], is_cylinder: bool) -> Re
     }
     // Disjoint triangles that fill the domain and share all but so many edges: those lie on the boundary.
     if open == half.boundary.len() { Ok(()) } else { Err(format!("{open} edges have one triangle")) }
+}
+
+/// Each point of a slit domain's boundary has an edge to the next that is in one triangle only.
+fn boundary_is_open(half: &HalfParts) -> Result<(), String> {
+    let edges: BTreeSet<[u32; 2]> = half.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+    let count = half.boundary.len() as u32;
+    let is_open = |v: u32| edges.contains(&[v, (v + 1) % count]) && !edges.contains(&[(v + 1) % count, v]);
+    if (0..count).all(is_open) { Ok(()) } else { Err("a part of the boundary is not open".to_owned()) }
 }
 
 /// Splitmix64.

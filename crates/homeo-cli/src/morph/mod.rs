@@ -47,6 +47,7 @@ pub fn run(session: &Session, options: &MorphArgs, outputs: &mut Outputs) -> Res
     let kind = check_output(options)?;
     session.stage("read");
     let (pair, turn) = polygons::read(&options.polygons)?;
+    let turn = polygons::turn_of_one_hole(&options.polygons, &pair, turn)?;
     let first = polygons::paths(&options.polygons).first().copied().unwrap_or(&options.input);
     session.fact("input", proof::domain_json(&pair.source, first));
     let picture = picture::read(&options.input)?;
@@ -131,7 +132,8 @@ impl Step<'_> {
         outputs: &mut Outputs,
     ) -> Result<(Picture, Claim)> {
         let pair = DomainPair { source: pair.source.clone(), target: self.frame.shape.clone() };
-        let map = harmonic_map(&pair, params(&options.polygons, self.frame.turn), session);
+        let turn = self.frame.turn.filter(|_| pair.source.rings().len() == 2);
+        let map = harmonic_map(&pair, params(&options.polygons, turn), session);
         let map = map.map_err(|error| explain(session, &error))?;
         let provenance = Provenance { source_name: file_name(&options.input), ..Provenance::default() };
         let claim =

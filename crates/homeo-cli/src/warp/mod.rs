@@ -106,6 +106,7 @@ fn make(session: &Session, options: &WarpArgs) -> Result<Made> {
             map: map.into(),
         });
     }
+    let turn = polygons::turn_of_one_hole(&options.polygons, &pair, turn)?;
     let map =
         harmonic_map(&pair, params(&options.polygons, turn), session).map_err(|error| explain(session, &error))?;
     let made = json!({
@@ -187,7 +188,7 @@ pub fn filter(name: FilterName) -> Filter {
 pub fn explain(session: &Session, error: &HarmonicError) -> Failure {
     match error {
         HarmonicError::Cancelled => session.stopped(),
-        HarmonicError::TooManyHoles(_) => Failure::input("too-many-holes", error.to_string()),
+        HarmonicError::TurnOfSeveralHoles(_) => Failure::usage(error.to_string()),
         _ => Failure::limits("no-map", format!("{error}; nothing was written")),
     }
 }

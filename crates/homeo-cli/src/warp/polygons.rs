@@ -40,6 +40,17 @@ pub fn read(options: &PolygonArgs) -> Result<(DomainPair, Option<f64>)> {
     Ok((pair, turn))
 }
 
+/// By how many degrees harmonic maps turn a hole: they do as they are asked for one hole only.
+pub fn turn_of_one_hole(options: &PolygonArgs, pair: &DomainPair, turn: Option<f64>) -> Result<Option<f64>> {
+    match (pair.source.rings().len() > 2, options.turn) {
+        (false, _) => Ok(turn),
+        (true, None) => Ok(None),
+        (true, Some(_)) => Err(Failure::usage(
+            "--turn is for one hole; with several, harmonic maps take short ways between the holes to short ways",
+        )),
+    }
+}
+
 /// The source of a pair, or a polygon by itself. Like those of pairs, its rings may run either way round.
 pub fn source(path: &Path) -> Result<PlanarDomain> {
     let rings = match is_drawing(path) {

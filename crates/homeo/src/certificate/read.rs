@@ -16,8 +16,8 @@ use crate::complex::{ComplexMap, EdgeSpeeds};
 use crate::composite::{CompositeMap, Tiling};
 use crate::input::SourceMesh;
 use crate::map::{
-    BoundaryPoint, Centre, Foliation, FoliationParts, HalfParts, HarmonicMap, Middle, SHARE_BITS, Section, Shell,
-    ShellParts, Target, is_flat,
+    BoundaryPoint, Centre, Circuit, Foliation, FoliationParts, HalfParts, HarmonicMap, Middle, SHARE_BITS, Section,
+    Shell, ShellParts, Target, is_flat,
 };
 use crate::refine::{Carrier, RefinedMesh};
 
@@ -90,7 +90,7 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
         }
         "composite-harmonic" => {
             is_of_dimension(&text("target"), 2)?;
-            Ok(StoredMap::Planar(file.harmonic(text("target") == "annulus")?.into()))
+            Ok(StoredMap::Planar(file.harmonic(&text("target"))?.into()))
         }
         "composite-mean-value" => {
             is_of_dimension(&text("target"), 2)?;
@@ -194,20 +194,41 @@ impl<'b> File<'b> {
         }
     }
 
-    fn harmonic(&mut self, is_cylinder: bool) -> Result<HarmonicMap, MapFileError> {
+    fn harmonic(&mut self, target: &str) -> Result<HarmonicMap, MapFileError> {
         let sizes = self.array::<u32>("source_rings", 1)?;
-        if sizes.len() != 1 + usize::from(is_cylinder) {
-            return inconsistent("a polygon has one ring, an annulus two");
+        let is_as_said = match target {
+            "polygon" => sizes.len() == 1,
+            "annulus" => sizes.len() == 2,
+            _ => target == "domain" && sizes.len() > 2,
+        };
+        if !is_as_said {
+            return inconsistent("a polygon has one ring, an annulus two, a domain more");
         }
         let [source, target] = ["source", "target"].map(|name| {
             let rings = self.rings(&format!("{name}_points"), &sizes)?;
             PlanarDomain::new(rings).map_err(|e| MapFileError::Inconsistent(format!("{name}: {e}")))
         });
         let (source, target) = (source?, target?);
-        let middle = Middle::new(self.rings("middle_points", &sizes)?);
+        let middle = self.middle(&sizes)?;
         let [source, target] =
-            [("source", source), ("target", target)].map(|(name, domain)| self.half(name, domain, is_cylinder));
+            [("source", source), ("target", target)].map(|(name, domain)| self.half(name, domain, &middle));
         Ok(HarmonicMap::new(middle, source?, target?))
+    }
+
+    /// With more than one hole there are seams.
+    fn middle(&mut self, sizes: &[u32]) -> Result<Middle, MapFileError> {
+        if sizes.len() < 3 {
+            return Ok(Middle::new(self.rings("middle_points", sizes)?));
+        }
+        let sizes: Vec<usize> = sizes.iter().map(|&size| size as usize).collect();
+        let Some(circuit) = Circuit::new(&sizes, &self.rows::<u32, 2>("seams")?) else {
+            return inconsistent("the seams do not join all rings as a tree, each by vertices without another seam");
+        };
+        let polygon = self.points_2d("middle_points")?;
+        match polygon.len() == circuit.sides().len() {
+            true => Ok(Middle::slit(circuit, polygon)),
+            false => inconsistent("middle_points does not have a row for each edge and two for each seam"),
+        }
     }
 
     fn composite(&mut self) -> Result<CompositeMap, MapFileError> {
@@ -284,7 +305,8 @@ impl<'b> File<'b> {
         }
     }
 
-    fn half(&mut self, name: &str, domain: PlanarDomain, is_cylinder: bool) -> Result<HalfParts, MapFileError> {
+    fn half(&mut self, name: &str, domain: PlanarDomain, middle: &Middle) -> Result<HalfParts, MapFileError> {
+        let is_cylinder = middle.is_cylinder();
         let named = |what: &str| format!("{name}_{what}");
         let boundary: Vec<BoundaryPoint> = self
             .rows::<u32, 3>(&named("boundary"))?
@@ -292,11 +314,18 @@ impl<'b> File<'b> {
             .map(|[ring, edge, share]| BoundaryPoint { ring, edge, share })
             .collect();
         let exists = |p: &BoundaryPoint| {
-            domain.rings().get(p.ring as usize).is_some_and(|ring| (p.edge as usize) < ring.len())
+            middle.rings().get(p.ring as usize).is_some_and(|ring| (p.edge as usize) < ring.len())
                 && p.share < 1 << SHARE_BITS
         };
         if !boundary.iter().all(exists) {
             return inconsistent(format!("a row of {name}_boundary is no point on an edge"));
+        }
+        let mut seam_points = Vec::new();
+        if let Some(circuit) = middle.circuit() {
+            seam_points = self.points_2d(&named("seam_points"))?;
+            if circuit.places(&boundary, &seam_points).is_none() {
+                return inconsistent(format!("both sides of a seam of the {name} do not have the same points"));
+            }
         }
         let (inner, images) = (self.points_2d(&named("inner"))?, self.points_2d(&named("images"))?);
         let triangles = self.rows::<u32, 3>(&named("triangles"))?;
@@ -312,7 +341,7 @@ impl<'b> File<'b> {
                 "there is no triangle, or a row of {name}_triangles names a vertex that does not exist"
             ));
         }
-        Ok(HalfParts { domain, boundary, inner, images, triangles, shifts })
+        Ok(HalfParts { domain, boundary, seam_points, inner, images, triangles, shifts })
     }
 
     fn shell(&mut self, target: &str) -> Result<Shell, MapFileError> {

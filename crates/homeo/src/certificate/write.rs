@@ -135,14 +135,20 @@ pub fn write_complex(map: &ComplexMap, provenance: &Provenance, out: &mut (impl 
 /// # Errors
 /// When `out` cannot be written.
 pub fn write_harmonic(map: &HarmonicMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
-    let target = if map.middle().is_cylinder() { "annulus" } else { "polygon" };
-    let mut archive = Archive::begin_planar(map.source(), ["composite-harmonic", target], provenance, out)?;
+    let kind = ["composite-harmonic", target_name(map.source())];
+    let mut archive = Archive::begin_planar(map.source(), kind, provenance, out)?;
     archive.points("target_points", &map.target_half().parts().domain.vertices().collect::<Vec<_>>())?;
+    if let Some(circuit) = map.middle().circuit() {
+        archive.array("seams", &[circuit.seams().len(), 2], circuit.seams().as_flattened().iter().copied())?;
+    }
     archive.points("middle_points", &map.middle().rings().concat())?;
     for (name, half) in [("source", map.source_half()), ("target", map.target_half())] {
         let parts = half.parts();
         let rows: Vec<u32> = parts.boundary.iter().flat_map(|p| [p.ring, p.edge, p.share]).collect();
         archive.array(&format!("{name}_boundary"), &[parts.boundary.len(), 3], rows.into_iter())?;
+        if map.middle().circuit().is_some() {
+            archive.points(&format!("{name}_seam_points"), &parts.seam_points)?;
+        }
         archive.points(&format!("{name}_inner"), &parts.inner)?;
         archive.points(&format!("{name}_images"), &parts.images)?;
         let triangles = parts.triangles.as_flattened().iter().copied();

@@ -21,7 +21,10 @@ mod steps;
 mod target;
 
 pub use foliation::{Centre, DEFAULT_ACCURACY, Foliation, FoliationParts};
-pub use harmonic::{BoundaryPoint, Distortion, DistortionSummary, Half, HalfParts, HarmonicMap, Middle, SHARE_BITS};
+pub use harmonic::{
+    BoundaryPoint, Circuit, CircuitSide, Distortion, DistortionSummary, Half, HalfParts, HarmonicMap, Middle,
+    SHARE_BITS,
+};
 pub(crate) use harmonic::{distortion as planar_distortion, neighbours};
 pub(crate) use nearest::is_flat;
 pub use planar::{Enclosed2, PlanarBijection, PlanarEvaluationError};

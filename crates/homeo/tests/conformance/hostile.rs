@@ -9,10 +9,10 @@ use homeo_verify::verify_bytes;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-use crate::planar;
 use crate::random::Random;
 use crate::shapes::{Shape, balls, disks};
 use crate::shells;
+use crate::{planar, planar_holes};
 
 fn file<const K: usize>(shape: &Shape<K>, target: Target) -> Vec<u8>
 where
@@ -34,6 +34,7 @@ fn files() -> Vec<Vec<u8>> {
         shells::bytes_of(&shells::built(&shells::singular(), 30)),
         planar::small_file(false),
         planar::small_file(true),
+        planar_holes::small_file(),
         planar::small_complex_file(),
     ]
 }

@@ -9,6 +9,7 @@ mod laws;
 mod order;
 mod overlays;
 mod planar;
+mod planar_holes;
 mod points;
 mod random;
 mod refinement;

@@ -81,6 +81,7 @@ pub fn landmark_map(landmarks: &[Landmark]) -> Result<HarmonicMap, LandmarkError
     let half = |domain: PlanarDomain, side: usize| HalfParts {
         domain,
         boundary: boundary.clone(),
+        seam_points: Vec::new(),
         inner: inner(side),
         images: inner(1),
         triangles: triangles.iter().map(|t| t.map(|v| number[v])).collect(),

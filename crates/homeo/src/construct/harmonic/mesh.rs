@@ -81,29 +81,42 @@ fn scale_of(points: &[Point2]) -> f64 {
 }
 
 impl Mesh {
-    /// Splits inner edges whose ends are on one ring (the outer one has the first `outer` vertices): on a cylinder, where a
-    /// ring goes to a straight line, they would leave triangles without area.
-    pub fn split_chords(&mut self, outer: usize) {
-        let count = self.boundary.len();
-        let ring_of = |v: u32| if (v as usize) < outer { 0 } else { 1 };
+    /// How many vertices there are.
+    pub fn len(&self) -> usize {
+        self.boundary.len() + self.inner.len()
+    }
+
+    /// Where all vertices lie.
+    pub fn positions(&self) -> Vec<Point2> {
+        self.boundary.iter().chain(&self.inner).copied().collect()
+    }
+
+    /// Where a vertex lies.
+    pub fn position(&self, vertex: u32) -> Point2 {
+        match (vertex as usize).checked_sub(self.boundary.len()) {
+            Some(inner) => self.inner[inner],
+            None => self.boundary[vertex as usize],
+        }
+    }
+
+    /// Splits inner edges whose ends, the lower one first, are so: mapped into one straight line they would leave triangles
+    /// without area.
+    pub fn split_chords(&mut self, is_chord: impl Fn([u32; 2]) -> bool) {
         let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
         for [a, b, c] in &self.triangles {
             for [i, j] in [[a, b], [b, c], [c, a]] {
                 *sides.entry([*i.min(j), *i.max(j)]).or_default() += 1;
             }
         }
-        let mut chords: Vec<[u32; 2]> = sides
-            .into_iter()
-            .filter(|&([i, j], uses)| uses == 2 && (j as usize) < count && ring_of(i) == ring_of(j))
-            .map(|(chord, _)| chord)
-            .collect();
+        let mut chords: Vec<[u32; 2]> =
+            sides.into_iter().filter(|&(ends, uses)| uses == 2 && is_chord(ends)).map(|(chord, _)| chord).collect();
         chords.sort_unstable();
         let middles: HashMap<[u32; 2], u32> = chords
             .into_iter()
             .map(|[i, j]| {
-                let (p, q) = (self.boundary[i as usize], self.boundary[j as usize]);
+                let (p, q) = (self.position(i), self.position(j));
                 self.inner.push([0, 1].map(|axis| 0.5 * (p[axis] + q[axis])));
-                ([i, j], (count + self.inner.len() - 1) as u32)
+                ([i, j], self.len() as u32 - 1)
             })
             .collect();
         let mut waiting = std::mem::take(&mut self.triangles);
@@ -120,5 +133,54 @@ impl Mesh {
             waiting.extend([[i, middle, far], [middle, j, far]]);
         }
         self.triangles.reverse();
+    }
+
+    /// Cuts it open so that its boundary passes these vertices, one after the other, with the triangles to the left. One that
+    /// is passed twice becomes two. None if the triangles between two of its passages do not form a fan.
+    pub fn opened(&self, walk: &[u32]) -> Option<Self> {
+        const NONE: u32 = u32::MAX;
+        let mut left_of = HashMap::with_capacity(3 * self.triangles.len());
+        for (t, &[a, b, c]) in self.triangles.iter().enumerate() {
+            left_of.extend([([a, b], (t, 0)), ([b, c], (t, 1)), ([c, a], (t, 2))]);
+        }
+        let mut number = vec![NONE; self.len()];
+        let mut inner = Vec::new();
+        let passed: HashSet<u32> = walk.iter().copied().collect();
+        for vertex in (0..self.len() as u32).filter(|vertex| !passed.contains(vertex)) {
+            number[vertex as usize] = (walk.len() + inner.len()) as u32;
+            inner.push(self.position(vertex));
+        }
+        let mut triangles: Vec<[u32; 3]> = self.triangles.iter().map(|t| t.map(|v| number[v as usize])).collect();
+        for (i, &here) in walk.iter().enumerate() {
+            let (before, mut spoke) = (walk[(i + walk.len() - 1) % walk.len()], walk[(i + 1) % walk.len()]);
+            while spoke != before {
+                let &(t, corner) = left_of.get(&[here, spoke])?;
+                if std::mem::replace(&mut triangles[t][corner], i as u32) != NONE {
+                    return None;
+                }
+                spoke = self.triangles[t][(corner + 2) % 3];
+            }
+        }
+        let is_whole = !triangles.as_flattened().contains(&NONE);
+        let boundary = walk.iter().map(|&vertex| self.position(vertex)).collect();
+        is_whole.then_some(Self { boundary, inner, triangles })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ring_of_triangles_opens_along_a_cut() {
+        let boundary = vec![[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [2.0, 2.0], [2.0, 3.0], [3.0, 2.0]];
+        let triangles = vec![[0, 1, 3], [1, 5, 3], [1, 2, 5], [2, 4, 5], [2, 0, 4], [0, 3, 4]];
+        let ring = Mesh { boundary, inner: Vec::new(), triangles };
+        let open = ring.opened(&[0, 1, 2, 0, 3, 4, 5, 3]).unwrap();
+        assert_eq!(open.triangles, [[0, 1, 7], [1, 6, 7], [1, 2, 6], [2, 5, 6], [2, 3, 5], [3, 4, 5]]);
+        assert_eq!((open.boundary[3], open.boundary[7]), ([0.0, 0.0], [2.0, 2.0]));
+        // The wrong way round the hole, and along a cut that is no edge.
+        assert!(ring.opened(&[0, 1, 2, 0, 3, 5, 4, 3]).is_none());
+        assert!(ring.opened(&[0, 1, 2, 0, 5, 3, 4, 5]).is_none());
     }
 }

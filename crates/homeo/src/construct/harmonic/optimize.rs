@@ -79,13 +79,13 @@ struct Problem<'a> {
     area: f64,
 }
 
-/// The middle with the least distortion that was found, begun with a convex polygon.
+/// The middle's polygon with the least distortion that was found, begun with a convex one.
 pub(super) fn optimized(
     halves: &[&Triangulated; 2],
     begin: &[Point2],
     kind: Distortion,
     progress: &impl Progress,
-) -> Result<Middle, HarmonicError> {
+) -> Result<Vec<Point2>, HarmonicError> {
     let sides = [Side::new(halves[0])?, Side::new(halves[1])?];
     let area = sides[0].sides.iter().map(|&m| determinant(m)).sum();
     let problem = Problem { sides, kind, area };
@@ -93,7 +93,7 @@ pub(super) fn optimized(
     for is_free in [false, true] {
         state = problem.descend(state, is_free, progress)?;
     }
-    Ok(Middle::new(vec![state.polygon]))
+    Ok(state.polygon)
 }
 
 impl Problem<'_> {

@@ -14,13 +14,13 @@ pub(super) struct Turns {
     pub of_target: i8,
 }
 
-/// Splits the turn of a pair between its halves. Nothing turns without a hole.
+/// Splits the turn of a pair between its halves. Nothing turns but for one hole.
 ///
 /// From the first outer to the first inner vertex the angle grows by `a` in the source and by `b`, both up to whole
 /// turns. The map turns by `t`, which is `b - a` up to whole turns: as asked for, or as little as possible. The middle
 /// has the inner vertex `a + t / 2` ahead, and in the target, where that is `b - t / 2`, by whole turns more or less.
 pub(super) fn of_pair(pair: &DomainPair, degrees: Option<f64>) -> Turns {
-    if pair.source.rings().len() < 2 {
+    if pair.source.rings().len() != 2 {
         return Turns { ahead: 0.0, of_target: 0 };
     }
     let [a, b] = [&pair.source, &pair.target].map(|domain| {

@@ -8,14 +8,15 @@ use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::Sign;
 use homeo_core::spatial::{Aabb, Tree};
 
-use super::middle::{Middle, SHARE_BITS, between, bounds};
+use super::layout::Layout;
+use super::middle::{Middle, SHARE_BITS, bounds};
 
-/// A vertex of a triangulation that lies on an edge of the domain.
+/// A vertex of a triangulation that lies on an edge of the domain, or on one side of a seam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoundaryPoint {
-    /// Ring of the edge.
+    /// Ring of the edge; 0 on a circuit.
     pub ring: u32,
-    /// Number of the edge in its ring, which is that of its first vertex.
+    /// Number of the edge in its ring, which is that of its first vertex, or of the side of the circuit.
     pub edge: u32,
     /// How far along the edge, in units of `2^-30`: 0 is the edge's first vertex. Below `2^30`.
     pub share: u32,
@@ -33,8 +34,12 @@ impl BoundaryPoint {
 pub struct HalfParts {
     /// What is triangulated.
     pub domain: PlanarDomain,
-    /// Vertices on the boundary, in its order, ring after ring; every vertex of the domain is one. They come first.
+    /// Vertices on the boundary, in its order, ring after ring; every vertex of the domain is one. They come first. Those
+    /// on seams are there once for each side.
     pub boundary: Vec<BoundaryPoint>,
+    /// Where the points inside seams lie, seam after seam, from its first end to its second; the others are where their
+    /// shares say.
+    pub seam_points: Vec<Point2>,
     /// The other vertices.
     pub inner: Vec<Point2>,
     /// Their images in the middle.
@@ -48,7 +53,7 @@ pub struct HalfParts {
 /// A triangulated domain with its flattening, ready to be evaluated.
 #[derive(Clone, Debug)]
 pub struct Half {
-    parts: HalfParts,
+    layout: Layout,
     /// Over the triangles in the domain, and over their images.
     trees: [Tree; 2],
     /// Corners of the triangles on both sides, rounded.
@@ -71,10 +76,12 @@ pub(super) enum Side {
 impl Half {
     /// Prepares a half for evaluation.
     pub fn new(parts: HalfParts, middle: &Middle) -> Self {
+        let layout = Layout::new(parts, middle);
+        let count = layout.parts.triangles.len();
         let tree = |side: Side| {
-            let boxes: Vec<Aabb> = (0..parts.triangles.len())
+            let boxes: Vec<Aabb> = (0..count)
                 .map(|t| {
-                    let [low, high] = bounds(&corners::<Interval>(&parts, middle, side, t));
+                    let [low, high] = bounds(&layout.corners::<Interval>(middle, side, t));
                     Aabb { low: [low[0], low[1], 0.0], high: [high[0], high[1], 0.0] }
                 })
                 .collect();
@@ -82,11 +89,11 @@ impl Half {
         };
         let trees = [tree(Side::Domain), tree(Side::Image)];
         let rounded = [Side::Domain, Side::Image].map(|side| {
-            let corners = |t| corners::<Interval>(&parts, middle, side, t).map(|p| p.map(|x| x.near()));
-            (0..parts.triangles.len()).map(corners).collect()
+            let corners = |t| layout.corners::<Interval>(middle, side, t).map(|p| p.map(|x| x.near()));
+            (0..count).map(corners).collect()
         });
-        let neighbours = neighbours(&parts.triangles);
-        Self { parts, trees, rounded, neighbours, is_cylinder: middle.is_cylinder() }
+        let neighbours = neighbours(&layout.parts.triangles);
+        Self { layout, trees, rounded, neighbours, is_cylinder: middle.is_cylinder() }
     }
 
     pub(super) fn is_cylinder(&self) -> bool {
@@ -116,17 +123,17 @@ impl Half {
 
     /// The numbers that define it.
     pub fn parts(&self) -> &HalfParts {
-        &self.parts
+        &self.layout.parts
     }
 
     /// How many vertices the triangulation has.
     pub fn vertex_count(&self) -> usize {
-        self.parts.boundary.len() + self.parts.inner.len()
+        self.parts().boundary.len() + self.parts().inner.len()
     }
 
     /// Where a vertex lies in the domain, rounded.
     pub fn position(&self, vertex: u32) -> Point2 {
-        position::<Interval>(&self.parts, vertex).map(|x| x.near())
+        self.layout.position::<Interval>(vertex).map(|x| x.near())
     }
 
     /// Where the corners of a triangle go in the middle, rounded.
@@ -136,11 +143,11 @@ impl Half {
 
     /// Whether all triangles and all their images are counter-clockwise, exactly; the first that is not.
     pub fn first_flipped(&self, middle: &Middle) -> Option<usize> {
-        (0..self.parts.triangles.len()).find(|&t| {
+        (0..self.parts().triangles.len()).find(|&t| {
             [Side::Domain, Side::Image].into_iter().any(|side| {
-                let quick = corners::<Interval>(&self.parts, middle, side, t);
+                let quick = self.layout.corners::<Interval>(middle, side, t);
                 let sign = cross(&quick[0], &quick[1], &quick[2]).sign().unwrap_or_else(|| {
-                    let [a, b, c] = corners::<Rational>(&self.parts, middle, side, t);
+                    let [a, b, c] = self.layout.corners::<Rational>(middle, side, t);
                     cross(&a, &b, &c).sign()
                 });
                 sign != Sign::Positive
@@ -151,7 +158,7 @@ impl Half {
     /// Its numbers, if all triangles and images are counter-clockwise; the first triangle that is not.
     pub(crate) fn into_parts_if_positive(self, middle: &Middle) -> Result<HalfParts, usize> {
         match self.first_flipped(middle) {
-            None => Ok(self.parts),
+            None => Ok(self.layout.parts),
             Some(triangle) => Err(triangle),
         }
     }
@@ -189,7 +196,7 @@ impl Half {
         point: &[T; 2],
     ) -> Option<Option<[T; 2]>> {
         let to = if from == Side::Domain { Side::Image } else { Side::Domain };
-        let [a, b, c] = corners::<T>(&self.parts, middle, from, triangle);
+        let [a, b, c] = self.layout.corners::<T>(middle, from, triangle);
         let weights = [cross(point, &b, &c), cross(&a, point, &c), cross(&a, &b, point)];
         let signs = weights.each_ref().map(Scalar::sign);
         if signs.contains(&Some(Sign::Negative)) {
@@ -203,7 +210,7 @@ impl Half {
             // Flat, in a damaged file.
             return Some(None);
         }
-        let there = corners::<T>(&self.parts, middle, to, triangle);
+        let there = self.layout.corners::<T>(middle, to, triangle);
         let coordinate = |axis: usize| {
             let sum = (0..3).map(|i| weights[i].times(&there[i][axis])).reduce(|x, y| x.plus(&y));
             sum.unwrap_or_else(|| T::from_f64(0.0)).divide(&total)
@@ -228,31 +235,4 @@ pub(crate) fn neighbours(triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
 fn cross<T: Scalar>(a: &[T; 2], b: &[T; 2], c: &[T; 2]) -> T {
     let step = |p: &[T; 2], axis: usize| p[axis].minus(&a[axis]);
     step(b, 0).times(&step(c, 1)).minus(&step(b, 1).times(&step(c, 0)))
-}
-
-fn position<T: Scalar>(parts: &HalfParts, vertex: u32) -> [T; 2] {
-    let Some(point) = parts.boundary.get(vertex as usize) else {
-        return parts.inner[vertex as usize - parts.boundary.len()].map(T::from_f64);
-    };
-    let ring = &parts.domain.rings()[point.ring as usize];
-    let ends = [ring[point.edge as usize], ring[(point.edge as usize + 1) % ring.len()]];
-    between(&ends.map(|end| end.map(T::from_f64)), point.share)
-}
-
-fn corners<T: Scalar>(parts: &HalfParts, middle: &Middle, side: Side, triangle: usize) -> [[T; 2]; 3] {
-    let vertices = parts.triangles[triangle];
-    if side == Side::Domain {
-        return vertices.map(|v| position(parts, v));
-    }
-    std::array::from_fn(|corner| {
-        let vertex = vertices[corner] as usize;
-        let mut image: [T; 2] = match parts.boundary.get(vertex) {
-            Some(point) => between(&middle.edge(point.ring as usize, point.edge as usize), point.share),
-            None => parts.images[vertex - parts.boundary.len()].map(T::from_f64),
-        };
-        if middle.is_cylinder() {
-            image[0] = image[0].plus(&T::from_f64(f64::from(parts.shifts[triangle][corner])));
-        }
-        image
-    })
 }

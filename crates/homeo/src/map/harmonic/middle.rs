@@ -3,15 +3,18 @@
 use homeo_core::number::{Interval, Scalar};
 use homeo_core::planar::Point2;
 
+use super::circuit::Circuit;
 use super::half::BoundaryPoint;
 
-/// The domain that both triangulations are flattened onto: a convex polygon, or a flat cylinder for domains with a hole.
+/// The domain that both triangulations are flattened onto: a convex polygon, or a flat cylinder for domains with one hole.
 ///
 /// Its boundary is given by one point for each vertex of the domain, ring by ring; an edge of the domain goes to the
-/// segment between two of them, linearly.
+/// segment between two of them, linearly. Domains with several holes are slit open: there is one ring, with a point for
+/// each corner of the [`Circuit`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Middle {
     rings: Vec<Vec<Point2>>,
+    circuit: Option<Circuit>,
 }
 
 impl Middle {
@@ -22,10 +25,26 @@ impl Middle {
     /// 1; the outer ring has the second coordinate 0 and goes once round, the inner one has 1 and goes once backwards.
     /// Neither is checked here; the certificate says whether it is so.
     pub fn new(rings: Vec<Vec<Point2>>) -> Self {
-        Self { rings }
+        Self { rings, circuit: None }
     }
 
-    /// Images of the vertices, ring by ring.
+    /// Of domains that are slit open, by images of the circuit's corners: a strictly convex polygon, counter-clockwise, which
+    /// is not checked here.
+    pub fn slit(circuit: Circuit, polygon: Vec<Point2>) -> Self {
+        Self { rings: vec![polygon], circuit: Some(circuit) }
+    }
+
+    /// How domains with several holes are slit open.
+    pub fn circuit(&self) -> Option<&Circuit> {
+        self.circuit.as_ref()
+    }
+
+    /// The same with another polygon.
+    pub(crate) fn with_polygon(self, polygon: Vec<Point2>) -> Self {
+        Self { rings: vec![polygon], ..self }
+    }
+
+    /// Images of the vertices, ring by ring, or of the corners of the circuit.
     pub fn rings(&self) -> &[Vec<Point2>] {
         &self.rings
     }

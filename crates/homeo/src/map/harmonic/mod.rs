@@ -1,14 +1,17 @@
 //! Composite harmonic maps between planar domains, in their piecewise-linear form.
 //!
 //! Source and target are triangulated, each for itself, and flattened onto one domain between them: a convex polygon, or
-//! a flat cylinder if there is a hole. The map goes from the source to the middle and from there back to the target.
-//! `docs/theory/polygons.md` has the theorem.
+//! a flat cylinder if there is a hole. With several holes both are first slit open along seams, and glued again in the end.
+//! The map goes from the source to the middle and from there back to the target. `docs/theory/polygons.md` has the theorem.
 
+mod circuit;
 pub(crate) mod distortion;
 mod half;
+mod layout;
 mod middle;
 mod walk;
 
+pub use circuit::{Circuit, CircuitSide};
 pub use distortion::{Distortion, DistortionSummary};
 pub(crate) use half::neighbours;
 pub use half::{BoundaryPoint, Half, HalfParts};
