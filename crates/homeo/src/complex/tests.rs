@@ -1,7 +1,10 @@
 //! Complex maps: formulas against the definition, enclosures, covers, proofs, and what must fail.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 
+use super::optimize::Search;
 use super::*;
 use crate::composite::chart::Step;
 use crate::composite::frame::{Frame, Local};
@@ -9,7 +12,7 @@ use crate::composite::guide::Guide;
 use crate::composite::number::Form;
 use crate::composite::{JacobianLimits, JacobianVerdict, triangulate};
 use crate::coordinates::{Complex, ComplexCoordinates, ComplexFamily};
-use crate::progress::Silent;
+use crate::progress::{Progress, Silent};
 
 /// Numbers between 0 and 1 from a fixed seed.
 struct Random(u64);
@@ -297,4 +300,61 @@ fn enclosures_hold_samples() {
     }
     assert!(known > 300, "{known} boxes have enclosures");
     assert!(missed > 100, "forms a twentieth as large miss samples: {missed}");
+}
+
+#[test]
+fn slopes_of_the_search_are_those_of_differences() {
+    let mut random = Random(23);
+    for (name, pair) in pairs() {
+        let plain = step(&pair, &EdgeSpeeds::linear(pair.source.vertex_count()));
+        for degree in [2, 3, 5] {
+            let search = Search::new(&plain, [&pair.source, &pair.target], degree, &|| false);
+            let free: Vec<f64> = (0..degree * plain.points.len()).map(|_| 2.0 * random.unit() - 1.0).collect();
+            for sharpness in [1.0, 10.0] {
+                let (_, slopes) = search.rise(&free, sharpness);
+                let (_, others) = search.rise(&free, 3.0 * sharpness);
+                let (mut off, mut off_others) = (0.0f64, 0.0f64);
+                for k in 0..free.len() {
+                    let at = |step: f64| {
+                        let mut moved = free.clone();
+                        moved[k] += step;
+                        search.rise(&moved, sharpness).0
+                    };
+                    let difference = (at(1e-5) - at(-1e-5)) / 2e-5;
+                    off = off.max((slopes[k] - difference).abs());
+                    off_others = off_others.max((others[k] - difference).abs());
+                }
+                let size = slopes.iter().fold(0.0f64, |size, slope| size.max(slope.abs()));
+                assert!(size > 0.0 && off < 1e-5 * (1.0 + size), "{name} {degree} {sharpness}: {off} of {size}");
+                assert!(off_others > 1e-4 * size, "another sharpness has other slopes: {name} {off_others} of {size}");
+            }
+        }
+    }
+}
+
+/// Cancels when it is asked for the given time.
+struct Impatient {
+    asked: AtomicUsize,
+    limit: usize,
+}
+
+impl Progress for Impatient {
+    fn is_cancelled(&self) -> bool {
+        self.asked.fetch_add(1, Ordering::Relaxed) >= self.limit
+    }
+}
+
+#[test]
+fn a_cancelled_search_says_nothing_of_folds() {
+    let pair = pair(vec![square()], vec![dart(0.1)]);
+    let built = |limit: usize| {
+        let progress = Impatient { asked: AtomicUsize::new(0), limit };
+        let error = ComplexMap::build(&pair, &ComplexParams::default(), &progress).err();
+        (error, progress.asked.into_inner())
+    };
+    let (error, asked) = built(usize::MAX);
+    assert!(matches!(error, Some(ComplexError::Folds { .. })) && asked > 100, "{error:?} {asked}");
+    for limit in [0, 1, 20, asked / 2] {
+        assert_eq!(built(limit).0, Some(ComplexError::Stopped), "asked {limit} times");
+    }
 }
