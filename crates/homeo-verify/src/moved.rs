@@ -58,9 +58,13 @@ pub(crate) fn check_moved(map: &MapFile, after: &[Point]) -> Checked<Vec<(&'stat
     let skin = Skin::new(&complex, &signs)?;
     skin.check(&before)?;
     after.drawn(skin.check(&after))?;
+    let cells_checked = match size {
+        4 => "source tetrahedra with manifold links that are not flat and keep their sign (rules S2, M1-M3)",
+        _ => "source triangles with manifold links that are not flat (rules S2, M1-M3)",
+    };
     Ok(vec![
         ("source vertices, finite before and after (rules S1, M3)", before.points.len() as u64),
-        ("source cells with manifold links, not flat, signs kept (rules S2, M1-M3)", complex.count() as u64),
+        (cells_checked, complex.count() as u64),
         ("triangles that meet in common vertices and edges only, before and after (rules M4, M5)", skin.count()),
         ("pieces of the boundary: the outer one, and cavities (rules M4, M5)", skin.piece_count()),
     ])

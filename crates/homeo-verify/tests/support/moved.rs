@@ -180,9 +180,9 @@ pub fn is_valid(map: &Map) -> bool {
     let components = manifold_type(&map.source_cells).map_or(0, |found| found.0);
     let is_right = if size == 4 { components == 1 } else { components > 0 };
     is_right
+        && (size == 3 || keeps_signs(map))
         && is_injective(&map.positions, &map.source_cells)
         && is_injective(&map.target_positions, &map.source_cells)
-        && (size == 3 || keeps_signs(map))
 }
 
 fn manifest_is_right(map: &Map, size: usize) -> bool {

@@ -5,7 +5,7 @@ use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_core::predicate::{Sign, orient2d};
 
 use super::chart::Step;
-use super::evaluate::{Region, Jacobian};
+use super::evaluate::{Jacobian, Region};
 use super::invert::{InverseError, invert};
 use super::number::{Form, Number};
 use super::partition::{Partition, PartitionError, PartitionParams, Stage, binary_partition, given_partition};

@@ -9,6 +9,7 @@ use homeo_verify::verify_bytes;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
+use crate::moved;
 use crate::planar;
 use crate::random::Random;
 use crate::shapes::{Shape, balls, disks};
@@ -35,6 +36,8 @@ fn files() -> Vec<Vec<u8>> {
         planar::small_file(false),
         planar::small_file(true),
         planar::small_complex_file(),
+        moved::small_files().0,
+        moved::small_files().1,
     ]
 }
 
@@ -75,6 +78,11 @@ fn ask(map: &StoredMap) {
                 let _ = (shell.to_middle(point), shell.to_source(point), shell.is_inside(point));
                 let at = shell.project_exact(&exact);
                 let _ = at.map(|at| (shell.unproject_exact(&at), shell.to_source_exact(&at)));
+            }
+            StoredMap::Moved(moved) => {
+                let map = moved.as_bijection();
+                let _ = (map.forward(point), map.inverse(point));
+                let _ = (map.forward_exact(&exact), map.inverse_exact(&exact));
             }
             StoredMap::Planar(planar) => {
                 let ([x, y, _], [u, v, _]) = (point, exact);

@@ -35,7 +35,11 @@ fn enclosures_hold_samples() {
                 let middle = sides.map(|[a, b]| 0.5 * (a + b));
                 let point = piece.place(&outline, middle);
                 let guide = Guide::at(&outline, point, piece.vertex(), piece.direction(middle[1]));
-                let found = wide.evaluate(&piece.chart, [0, 1].map(|k| Form::between(sides[k][0], sides[k][1]).along(k)), &guide);
+                let found = wide.evaluate(
+                    &piece.chart,
+                    [0, 1].map(|k| Form::between(sides[k][0], sides[k][1]).along(k)),
+                    &guide,
+                );
                 if !found.determinant().radius().is_finite() {
                     continue;
                 }

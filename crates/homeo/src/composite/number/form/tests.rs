@@ -156,8 +156,7 @@ fn what_is_unknown_stays_so() {
     let [zero, large] = [0.0, 1e300].map(Form::of);
     assert!(unknown.radius().is_nan());
     for other in [zero, large, Form { middle: 1.0, slopes: [0.0; 2], radius: f64::INFINITY }] {
-        for result in
-            [unknown + other, other - unknown, unknown * other, other / unknown, Form::length(unknown, other)]
+        for result in [unknown + other, other - unknown, unknown * other, other / unknown, Form::length(unknown, other)]
         {
             assert!(!(result.low() > 0.0) && !(result.high() < 0.0), "{result:?}");
         }
