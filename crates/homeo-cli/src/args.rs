@@ -600,14 +600,16 @@ pub struct ReportArgs {
   homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json -o moved.csv --map star.homeo
   homeo warp testdata/images/checker.png --pair testdata/polygons/hole_turned.json --method mean-value -o smooth.png
   homeo warp testdata/points/star.csv --pair testdata/polygons/star_to_circle.json --method complex --degree 4 -o one_step.csv
-  homeo warp testdata/meshes/spot.mesh --from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj -o twisted.vtu
+  homeo warp testdata/meshes/spot.mesh --from testdata/cages/bar.obj --to testdata/cages/bar_twisted.obj -o twisted.vtu --map twisted.homeo
 
 Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\": [...]}, with several
 {\"outer\": [...], \"holes\": [[...], ...]}; a pair is {\"source\": ..., \"target\": ...}. Or they are the shapes of an SVG drawing, in its order, in pixels. Vertices correspond by number. What lies outside the target becomes
 transparent. With --landmarks the map is affine on the triangles between them; landmarks whose triangles
-turn over would fold the picture and are refused by name. The map's certificate is checked before anything is written; `homeo verify` checks it again.")]
+turn over would fold the picture and are refused by name. Cages are closed triangle meshes, and a mesh that moves with one is
+checked exactly. The map's certificate is checked before anything is written; `homeo verify` checks it again.")]
 pub struct WarpArgs {
-    /// A picture (PNG, JPEG; 8 or 16 bits, with opacity or without) or points of the plane (.csv, .npy)
+    /// A picture (PNG, JPEG; 8 or 16 bits, with opacity or without) or points of the plane (.csv, .npy); with cages a mesh or
+    /// points in space
     #[arg(value_name = "INPUT")]
     pub input: PathBuf,
     /// Points and where they go, in place of polygons: a table with the columns x,y,u,v

@@ -3,7 +3,7 @@
 use std::io::{self, Cursor, Seek, Write};
 use std::path::Path;
 
-use homeo::certificate::{FoliationMap, MapFileError, StoredMap, read_map};
+use homeo::certificate::{FoliationMap, MapFileError, MovedMap, StoredMap, read_map};
 use homeo::input::SourceMesh;
 use homeo::progress::Progress;
 use homeo_core::planar::PlanarDomain;
@@ -88,6 +88,43 @@ pub fn write_and_check(
     outputs: &mut Outputs,
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> Result<Claim> {
+    let bytes = written(session, path, outputs, write)?;
+    session.stage("certificate");
+    let claim = check_own(&bytes)?;
+    session.check()?;
+    Ok(claim)
+}
+
+/// The same for a map that need not be one: the checker's witness is the answer then, as exit code 4.
+///
+/// # Errors
+/// When it cannot be written, or has no certificate.
+pub fn write_and_decide(
+    session: &Session,
+    path: &Path,
+    outputs: &mut Outputs,
+    write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+) -> Result<Claim> {
+    let bytes = written(session, Some(path), outputs, write)?;
+    session.stage("certificate");
+    let claim = match verify_bytes(&bytes) {
+        Ok(Verdict::Refuted(witness)) => {
+            let what = "the map has no certificate; nothing was written";
+            return Err(refuted(Exit::Limits, what, &witness));
+        }
+        _ => check_own(&bytes)?,
+    };
+    session.check()?;
+    Ok(claim)
+}
+
+/// The bytes of a map's file, as they are there or would be.
+fn written(
+    session: &Session,
+    path: Option<&Path>,
+    outputs: &mut Outputs,
+    write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+) -> Result<Vec<u8>> {
     session.stage("write");
     let bytes = match path {
         Some(path) => {
@@ -102,10 +139,7 @@ pub fn write_and_check(
         }
     };
     session.check()?;
-    session.stage("certificate");
-    let claim = check_own(&bytes)?;
-    session.check()?;
-    Ok(claim)
+    Ok(bytes)
 }
 
 /// Checks a map that this program has just made: anything but a proof is a bug.
@@ -168,6 +202,8 @@ pub fn map_json(map: &StoredMap, path: &Path) -> Value {
         StoredMap::Foliation(FoliationMap::Volume(map)) => source_json(map.source(), path),
         StoredMap::Shell(shell) => source_json(shell.source(), path),
         StoredMap::Planar(map) => domain_json(map.as_bijection().source(), path),
+        StoredMap::Moved(MovedMap::Surface(map)) => source_json(map.source(), path),
+        StoredMap::Moved(MovedMap::Volume(map)) => source_json(map.source(), path),
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use homeo::certificate::{FoliationMap, PlanarMap, StoredMap, kind_of, read_hyperbolic};
 use homeo::export::{ReportData, VerdictWords, planar_page, report_of_map, report_of_shell, write_report};
-use homeo::map::{Bijection, PlanarBijection, Shell};
+use homeo::map::{PlanarBijection, Shell};
 use homeo::progress::Progress;
 use homeo_core::mesh::SimplicialComplex;
 use homeo_core::spatial::Aabb;
@@ -56,6 +56,13 @@ pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Re
                 PlanarMap::Complex(map) => json!({"degree": map.speeds().degree()}),
             };
             (title, size)
+        }
+        StoredMap::Moved(_) => {
+            let message = format!(
+                "{} is a mesh that has moved: the mesh before and what `homeo warp -o` writes are ordinary meshes, which any                  viewer shows; `homeo verify` says what is proved",
+                options.map.display()
+            );
+            return Err(Failure::input("wrong-kind", message));
         }
     };
     session.end_stage();

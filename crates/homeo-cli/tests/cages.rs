@@ -5,6 +5,7 @@ mod common;
 use common::Folder;
 use homeo_core::io::{Element, read_mesh};
 use homeo_core::mesh::TetrahedronComplex;
+use homeo_core::number::Rational;
 use homeo_core::predicate::orient3d;
 use homeo_core::topology::{Answer, Options, analyse_tetrahedra};
 
@@ -129,10 +130,75 @@ fn cages_that_are_none_are_refused_with_an_element() {
     assert_eq!(code, "counts-differ");
     let (code, _) = refused("testdata/cages/bar.obj", "testdata/meshes/spot.mesh");
     assert_eq!(code, "no-surface");
-    folder.line(&format!("warp testdata/meshes/spot.mesh {BARS} --map m.homeo -o out.mesh")).expect(2);
     let still = "--from testdata/cages/bar.obj --to testdata/cages/bar.obj";
     let run = folder.line(&format!("warp testdata/meshes/torus.obj {still} -o out.stl")).expect(2);
     assert!(run.stderr.contains("bit for bit") && !folder.path("out.stl").exists());
+}
+
+/// The map is kept, checked again, and evaluated both ways exactly.
+#[test]
+fn the_map_of_a_mesh_is_kept_with_its_certificate() {
+    let folder = folder();
+    let line = format!("warp testdata/meshes/spot.mesh {BARS} -o twisted.mesh --map twisted.homeo --json");
+    let report = folder.line(&line).expect(0).json();
+    assert_eq!((&report["certificate"]["holds"], &report["certificate"]["kind"]), (&true.into(), &"moved-mesh".into()));
+    assert_eq!(report["map"], "twisted.homeo");
+    let verified = folder.line("verify twisted.homeo --source testdata/meshes/spot.mesh --json").expect(0).json();
+    assert_eq!((&verified["input"]["tetrahedra"], &verified["source"]["same"]), (&3020.into(), &true.into()));
+    folder.line("verify twisted.homeo --source twisted.mesh").expect(3);
+    folder.line("eval twisted.homeo --points testdata/points/spot.csv --exact -o images.csv").expect(0);
+    folder.line("eval twisted.homeo --points images.csv --exact --inverse -o back.csv").expect(0);
+    folder.line("eval twisted.homeo --points back.csv --exact -o again.csv").expect(0);
+    assert_eq!(folder.read("images.csv"), folder.read("again.csv"));
+    let (before, after) = (rows(&folder.text("testdata/points/spot.csv")), rows(&folder.text("back.csv")));
+    assert!(before == after && !before.is_empty(), "{before:?} {after:?}");
+    let near = folder.line("eval twisted.homeo --points testdata/points/spot.csv -o near.csv --json").expect(0).json();
+    assert!(near["error"]["max_radius"].as_f64().unwrap() < 1e-9);
+    // Vertices go where the mesh has them.
+    let mesh = read_mesh(&folder.path("testdata/meshes/spot.mesh")).unwrap();
+    let moved = read_mesh(&folder.path("twisted.mesh")).unwrap();
+    let exact = |p: &[f64; 3]| p.map(|x| Rational::from_f64(x).unwrap());
+    let text = |points: &[[f64; 3]]| {
+        let line = |all: String, [x, y, z]: [Rational; 3]| format!("{all}{x},{y},{z}\n");
+        points.iter().take(40).map(exact).fold("x,y,z\n".to_owned(), line)
+    };
+    folder.write("vertices.csv", text(&mesh.positions));
+    folder.line("eval twisted.homeo --points vertices.csv --exact -o corners.csv").expect(0);
+    assert_eq!(rows(&folder.text("corners.csv")), rows(&text(&moved.positions)));
+    let far = folder.line("eval twisted.homeo --points testdata/points/cube.csv --inverse -o out.csv").expect(3);
+    assert!(far.stderr.contains("outside the moved mesh"), "{}", far.stderr);
+    folder.line("report twisted.homeo -o page.html").expect(3);
+    folder.line("pl twisted.homeo -o a.ply --image b.ply").expect(3);
+    folder.line(&format!("warp testdata/points/star.csv {BARS} --map m.homeo")).expect(2);
+}
+
+/// The rows of a table, as rationals.
+fn rows(text: &str) -> Vec<Vec<Rational>> {
+    let row = |line: &str| line.split(',').map(|x| x.parse().unwrap()).collect();
+    text.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn the_map_of_a_surface_is_kept_with_its_certificate() {
+    let folder = folder();
+    folder.line(&format!("warp testdata/meshes/torus.obj {BARS} --map torus.homeo")).expect(0);
+    let described = folder.line("verify torus.homeo --json").expect(0).json();
+    assert_eq!((&described["input"]["triangles"], &described["input"]["vertices"]), (&1440.into(), &720.into()));
+    folder.line("verify torus.homeo --source testdata/meshes/torus.obj").expect(0);
+}
+
+/// Two banks of a seam: the moved surface is sound, but the map of its points is not one that the checker certifies.
+#[test]
+fn a_surface_with_a_seam_has_no_certificate() {
+    let folder = folder();
+    let seam = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0.1 0 0\nv 0 0.1 0\nv 0.1 0.1 0\nf 1 2 3\nf 4 6 5\n";
+    folder.write("seam.obj", seam);
+    folder.line(&format!("warp seam.obj {BARS} -o moved.obj")).expect(0);
+    let run = folder.line(&format!("warp seam.obj {BARS} -o other.obj --map seam.homeo --json")).expect(4);
+    let report = run.json();
+    assert_eq!((&report["error"]["code"], &report["witness"]["rule"]), (&"refuted".into(), &"M4".into()));
+    assert_eq!(report["witness"]["vertices"].as_array().unwrap().len(), 6);
+    assert!(!folder.path("other.obj").exists() && !folder.path("seam.homeo").exists());
 }
 
 /// A tetrahedral mesh that follows its own boundary, stretched.
@@ -148,6 +214,8 @@ fn the_inside_follows_the_boundary() {
     let line = "warp testdata/meshes/spot.mesh --to stretched.obj --method harmonic -o out.mesh --json";
     let report = folder.line(line).expect(0).json();
     assert_eq!((&report["checked"]["holds"], &report["target"]), (&true.into(), &"boundary".into()));
+    folder.line("warp testdata/meshes/spot.mesh --to stretched.obj --method harmonic --map out.homeo").expect(0);
+    folder.line("verify out.homeo").expect(0);
     folder.line("warp testdata/meshes/torus.obj --to stretched.obj --method harmonic -o out.obj").expect(3);
     folder.line("warp testdata/meshes/spot.mesh --to testdata/cages/bar.obj --method harmonic -o out.mesh").expect(3);
 }

@@ -12,11 +12,13 @@
 //! 6. `composite` (C1-C3, of `docs/theory/composite.md`), `ball`, `mean_value`: numbers and formulas of C3 and K3;
 //! 7. `complex_barycentric` (K1-K3, of `docs/theory/complex.md`), `mean_value/speeds`: what speeds add;
 //! 8. `hyperbolic` (Y1-Y8, of `docs/theory/hyperbolic.md`);
-//! 9. `bundle` (T1-T10, of `docs/theory/bundles.md`).
+//! 9. `bundle` (T1-T10, of `docs/theory/bundles.md`);
+//! 10. `moved` (M1-M5, of `docs/theory/cages.md`).
 //!
 //! # Complexity
 //! Time `O(N log N)` for `N` cells (it sorts facets and edges); memory about ten times the bytes of the file. For
-//! shells also the number of pairs, of a source triangle and a prism, whose boxes meet. Composite mean value maps and complex maps: for each
+//! shells also the number of pairs, of a source triangle and a prism, whose boxes meet; for moved meshes that of pairs of
+//! boundary triangles. Composite mean value maps and complex maps: for each
 //! step some hundred to thousand boxes for each vertex, each of `O(N)`; on all processors.
 
 mod affine;
@@ -34,6 +36,7 @@ mod links;
 mod manifest;
 mod map_file;
 mod mean_value;
+mod moved;
 mod npy;
 mod number;
 mod piecewise_linear;
@@ -83,8 +86,10 @@ pub fn verify_bytes(bytes: &[u8]) -> Result<Verdict, Unreadable> {
         Ok(claim) => Verdict::Certified(claim),
         Err(Stop::Undecided(obstacle)) => Verdict::Undecided(obstacle),
         Err(Stop::Refuted(mut witness)) => {
-            let places: Option<Vec<_>> = witness.vertices.iter().map(|&v| map.place(v)).collect();
-            witness.points = places.unwrap_or_default();
+            if witness.points.is_empty() {
+                let places: Option<Vec<_>> = witness.vertices.iter().map(|&v| map.place(v)).collect();
+                witness.points = places.unwrap_or_default();
+            }
             Verdict::Refuted(witness)
         }
     })
@@ -119,7 +124,7 @@ pub fn compare_source(
 ) -> Result<SourceMatch, Unreadable> {
     let map = MapFile::read(bytes)?;
     let bits = |points: &[[f64; 3]], v: usize| points[v].map(f64::to_bits);
-    let size = map.manifest.target.cell_size();
+    let size = map.manifest.cell_size();
     let difference = if vertices_per_cell != size {
         Some(format!("cells of {size} vertices, not {vertices_per_cell}"))
     } else if (positions.len(), cells.len()) != (map.positions.len(), map.cells.len()) {
@@ -197,6 +202,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::Hyperbolic => ("hyperbolic", "theorem on glued truncated tetrahedra, rules Y1-Y7"),
         Kind::UnitTangentBundle if has_section => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T10"),
         Kind::UnitTangentBundle => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T8"),
+        Kind::MovedMesh => ("moved-mesh", "theorem on moved meshes, rules M1-M5"),
     };
     let (target, onto) = match map.manifest.target {
         Target::Square => ("square", "square [0,1]^2"),
@@ -214,8 +220,9 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::CanonicalDecomposition => ("canonical-decomposition", "manifold"),
         Target::UnitTangentBundle => ("unit-tangent-bundle", "surface"),
         Target::UnitTangentBundleWithSection => ("unit-tangent-bundle-with-section", "surface"),
+        Target::Space => ("space", "moved mesh"),
     };
-    let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.target.cell_size());
+    let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.cell_size());
     let mut statement = format!(
         "The stored map is a homeomorphism from the complex of {vertices} vertices and {cells} cells onto the \
          {onto} ({theorem})."
@@ -278,8 +285,15 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         statement = data.statement(theorem);
         overlaps = "That oriented circle bundles are classified by their Euler number is a theorem that the checker relies on.";
     }
+    if let MapData::Moved(_) = &map.data {
+        statement = moved::statement(map, theorem);
+        overlaps = "Nothing is said of how much it distorts.";
+    }
     let limits = [
         match &map.data {
+            MapData::Moved(_) => {
+                "The claim is about the two meshes in the file, and not about what moved the one to the other."
+            }
             MapData::Bundle(_) => {
                 "The claim is about the surface and the tetrahedra in the file, as abstract complexes."
             }
@@ -326,6 +340,9 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
     if let MapData::Bundle(data) = &map.data {
         return bundle::check_bundle(data);
     }
+    if let MapData::Moved(after) = &map.data {
+        return moved::check_moved(map, after);
+    }
     let source = source::check_source(map)?;
     let refined = match &map.refinement {
         Some(refinement) => Some(subdivision::check_subdivision(map, refinement, &source)?),
@@ -347,7 +364,7 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
             checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
         }
         MapData::Shell(_) | MapData::Harmonic(_) | MapData::Composite(_) => {} // above
-        MapData::Complex(_) | MapData::Hyperbolic(_) | MapData::Bundle(_) => {} // above
+        MapData::Complex(_) | MapData::Hyperbolic(_) | MapData::Bundle(_) | MapData::Moved(_) => {} // above
     }
     Ok(checked)
 }

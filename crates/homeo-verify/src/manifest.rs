@@ -42,6 +42,8 @@ pub(crate) enum Target {
     /// The same, with a section of it over the edges of the surface.
     #[serde(rename = "unit-tangent-bundle-with-section")]
     UnitTangentBundleWithSection,
+    /// Where a mesh has moved to.
+    Space,
 }
 
 impl Target {
@@ -65,9 +67,10 @@ impl Target {
         matches!(self, Target::UnitTangentBundle | Target::UnitTangentBundleWithSection)
     }
 
-    /// Vertices of a cell: three or four.
-    pub(crate) fn cell_size(self) -> usize {
-        let is_solid = matches!(self, Target::Cube | Target::Ball) || self.is_geodesic() || self.is_bundle();
+    /// Vertices of a cell: three or four. In space, a surface and a volume may move: [`Manifest::cell_size`].
+    fn largest_cell_size(self) -> usize {
+        let is_solid = matches!(self, Target::Cube | Target::Ball | Target::Space);
+        let is_solid = is_solid || self.is_geodesic() || self.is_bundle();
         if is_solid { 4 } else { 3 }
     }
 }
@@ -84,6 +87,7 @@ pub(crate) enum Kind {
     ComplexBarycentric,
     Hyperbolic,
     UnitTangentBundle,
+    MovedMesh,
 }
 
 /// What the manifest claims.
@@ -142,7 +146,9 @@ impl Manifest {
         if let Some(key) = manifest.others.keys().find(|key| !is_known(key)) {
             return Err(unreadable(format!("manifest.json has an unknown field {key:?}")));
         }
-        readable(manifest.dimension == manifest.target.cell_size() - 1, "dimension and target disagree")?;
+        let largest = manifest.target.largest_cell_size();
+        let is_surface = manifest.target == Target::Space && manifest.dimension == 2;
+        readable(is_surface || manifest.dimension == largest - 1, "dimension and target disagree")?;
         let is_radial = matches!(manifest.target, Target::Disk | Target::Ball);
         readable(is_radial == manifest.centre.is_some(), "a centre belongs to disk and ball, and to no other target")?;
         let is_possible = !is_radial || manifest.kind == Kind::Foliation;
@@ -159,7 +165,14 @@ impl Manifest {
         let is_bundle = manifest.kind == Kind::UnitTangentBundle;
         let has_bundle = manifest.target.is_bundle();
         readable(is_bundle == has_bundle, "kind unit-tangent-bundle and the targets of bundles belong together")?;
+        let is_moved = manifest.kind == Kind::MovedMesh;
+        readable(is_moved == (manifest.target == Target::Space), "kind moved-mesh and target space belong together")?;
         Ok(manifest)
+    }
+
+    /// Vertices of a cell: three or four.
+    pub(crate) fn cell_size(&self) -> usize {
+        self.dimension + 1
     }
 }
 

@@ -37,6 +37,8 @@ pub(crate) enum MapData {
     Complex(ComplexData),
     Hyperbolic(HyperbolicData),
     Bundle(BundleData),
+    /// Where the vertices have moved to.
+    Moved(Vec<Point>),
 }
 
 /// The arrays of a foliation; the section is empty for the ball.
@@ -155,19 +157,22 @@ impl MapFile {
             return Ok(MapFile { manifest, positions: vec![], cells: vec![], refinement: None, data });
         }
         let (positions, cells) = read_source(&mut archive, &manifest)?;
-        let size = manifest.target.cell_size();
-        let refinement = match archive.0.contains_key("cells.npy") && manifest.kind != Kind::Shell {
+        let size = manifest.cell_size();
+        let may_be_refined = !matches!(manifest.kind, Kind::Shell | Kind::MovedMesh);
+        let refinement = match may_be_refined && archive.0.contains_key("cells.npy") {
             true => Some(Refinement::read(&mut archive, size)?),
             false => None,
         };
         let data = if manifest.kind == Kind::Shell {
             MapData::Shell(ShellData::read(&mut archive, manifest.target)?)
+        } else if manifest.kind == Kind::MovedMesh {
+            MapData::Moved(Array::take(&mut archive, "target_positions")?.read_points(Some(positions.len()), 3)?)
         } else if manifest.kind == Kind::PiecewiseLinear {
             let count = positions.len() + refinement.as_ref().map_or(0, |r| r.carriers.len());
             MapData::PiecewiseLinear(Array::take(&mut archive, "target_positions")?.read_points(Some(count), size - 1)?)
         } else {
             let count = refinement.as_ref().map_or(cells.len(), |r| r.cells.len()) / size;
-            MapData::Foliation(FoliationData::read(&mut archive, manifest.target, count)?)
+            MapData::Foliation(FoliationData::read(&mut archive, &manifest, count)?)
         };
         all_taken(&archive)?;
         Ok(MapFile { manifest, positions, cells, refinement, data })
@@ -224,7 +229,7 @@ pub(crate) fn source_hash(counts: [usize; 3], arrays: &[&Array]) -> String {
 /// The source mesh, when it is the one of the manifest.
 fn read_source(archive: &mut Archive, manifest: &Manifest) -> Result<(Vec<Point>, Vec<u32>), Unreadable> {
     let (positions, cells) = (Array::take(archive, "source_positions")?, Array::take(archive, "source_cells")?);
-    let (source, size) = (&manifest.source, manifest.target.cell_size());
+    let (source, size) = (&manifest.source, manifest.cell_size());
     let hash = source_hash([source.vertices, size, source.cells], &[&positions, &cells]);
     let source_arrays = (positions.read_points(None, 3)?, cells.read(U4, None, size)?);
     let is_counted = (source_arrays.0.len(), source_arrays.1.len() / size) == (source.vertices, source.cells);
@@ -246,8 +251,9 @@ impl Refinement {
 }
 
 impl FoliationData {
-    fn read(archive: &mut Archive, target: Target, count: usize) -> Result<Self, Unreadable> {
-        let directions = Array::take(archive, "directions")?.read(I1, Some(count), target.cell_size())?;
+    fn read(archive: &mut Archive, manifest: &Manifest, count: usize) -> Result<Self, Unreadable> {
+        let target = manifest.target;
+        let directions = Array::take(archive, "directions")?.read(I1, Some(count), manifest.cell_size())?;
         let lengths = Array::take(archive, "lengths")?.read(U4, Some(count), 1)?;
         let (mut section_vertices, mut section_coordinates) = (vec![], vec![]);
         if target != Target::Ball {

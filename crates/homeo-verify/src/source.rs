@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 pub(crate) fn check_source(map: &MapFile) -> Checked<Complex> {
     check_finite(&map.positions)?;
     // S2: indices; and the first part of 8, facets with at most two cells.
-    let size = map.manifest.target.cell_size();
+    let size = map.manifest.cell_size();
     let source = Complex::new(size, map.cells.clone(), map.positions.len(), ["S2", "8"])?;
     // S3: positive orientation (n = 3), area other than zero (n = 2).
     for (c, cell) in source.cells().enumerate() {

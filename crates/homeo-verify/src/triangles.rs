@@ -2,7 +2,7 @@
 //!
 //! Everything is decided by exact signs; no triangle has area zero, no tetrahedron volume zero.
 
-use crate::number::{Exact, Point, exact_orientation, orientation_2d, orientation_3d};
+use crate::number::{Exact, Point, exact_orientation, orientation_2d, orientation_3d, steps_orientation};
 use std::cmp::Ordering;
 
 /// The corners of a triangle.
@@ -19,6 +19,30 @@ pub(crate) fn triangles_meet_beyond(p: Point, a: &Triangle, b: &Triangle) -> boo
     let is_opposite = |edge: &[Point; 2]| !edge.contains(&p);
     let meets = |a: &Triangle, b: &Triangle| edges(a).into_iter().filter(is_opposite).any(|e| meets_segment(b, e));
     meets(a, b) || meets(b, a)
+}
+
+/// Whether two triangles meet in more than their common corners and edge; corners are the same if their names are, and
+/// those of one triangle lie apart.
+pub(crate) fn do_clash<Name: Copy + Eq>([a, b]: [&[Name; 3]; 2], point: impl Fn(Name) -> Point) -> bool {
+    let (common, rest): (Vec<Name>, Vec<Name>) = a.iter().partition(|corner| b.contains(corner));
+    match common[..] {
+        [] => triangles_meet(&a.map(&point), &b.map(&point)),
+        [corner] => triangles_meet_beyond(point(corner), &a.map(&point), &b.map(&point)),
+        [from, to] => {
+            let other = b.iter().find(|corner| !common.contains(corner));
+            let thirds = [rest[0], other.copied().unwrap_or(rest[0])];
+            are_folded([from, to].map(&point), thirds.map(&point))
+        }
+        _ => true,
+    }
+}
+
+/// Whether two triangles over a common edge lie in one plane, on the same side of it.
+fn are_folded([from, to]: [Point; 2], [third, other]: [Point; 2]) -> bool {
+    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let side = |p: Point, axis: Point| steps_orientation([[from, to], [from, p], [[0.0; 3], axis]]);
+    orientation_3d(from, to, third, other) == Ordering::Equal
+        && axes.into_iter().all(|axis| side(third, axis) == side(other, axis))
 }
 
 fn edges(&[a, b, c]: &Triangle) -> [[Point; 2]; 3] {

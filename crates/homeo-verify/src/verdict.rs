@@ -28,11 +28,11 @@ pub struct Claim {
     /// The claim in words, with the theorem that was applied.
     pub statement: String,
     /// `foliation`, `piecewise-linear`, `shell`, `composite-harmonic`, `composite-mean-value`, `complex-barycentric`,
-    /// `hyperbolic` or `unit-tangent-bundle`.
+    /// `hyperbolic`, `unit-tangent-bundle` or `moved-mesh`.
     pub kind: String,
     /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon`,
-    /// `annulus`, `domain`, `geodesic-boundary`, `canonical-decomposition`, `unit-tangent-bundle` or
-    /// `unit-tangent-bundle-with-section`.
+    /// `annulus`, `domain`, `geodesic-boundary`, `canonical-decomposition`, `unit-tangent-bundle`,
+    /// `unit-tangent-bundle-with-section` or `space`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]

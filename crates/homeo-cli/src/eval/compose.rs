@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use homeo::certificate::StoredMap;
-use homeo::map::{Bijection, Enclosed};
+use homeo::map::Enclosed;
 use homeo::progress::Progress;
 use homeo_core::number::Rational;
 use serde_json::json;

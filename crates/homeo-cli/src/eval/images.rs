@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use homeo::certificate::{FoliationMap, PlanarMap, StoredMap};
+use homeo::certificate::{PlanarMap, StoredMap};
 use homeo::map::{
     Bijection, Enclosed, Enclosed2, EvaluationError, HarmonicMap, PlanarEvaluationError, Shell, ShellEvaluationError,
 };
@@ -51,13 +51,7 @@ pub type Image<I> = Result<I, NoImage>;
 /// Images in floating point, in parallel; the order is that of the points.
 pub fn floating(map: &StoredMap, direction: Direction, points: &[[f64; 3]]) -> Vec<Image<Enclosed>> {
     match map {
-        StoredMap::Foliation(map) => {
-            let images = match direction {
-                Direction::Forward => map.forward_batch(points),
-                Direction::Inverse => map.inverse_batch(points),
-            };
-            images.into_iter().map(|image| image.map_err(NoImage::Map)).collect()
-        }
+        StoredMap::Foliation(map) => floating_in_map(map, direction, points),
         StoredMap::Shell(shell) => {
             let one = |&point: &[f64; 3]| match direction {
                 Direction::Forward => shell.to_section(point),
@@ -65,6 +59,7 @@ pub fn floating(map: &StoredMap, direction: Direction, points: &[[f64; 3]]) -> V
             };
             points.par_iter().map(|point| one(point).map_err(NoImage::Shell)).collect()
         }
+        StoredMap::Moved(map) => floating_in_map(map.as_bijection(), direction, points),
         StoredMap::Planar(map) => {
             let map = map.as_bijection();
             let one = |&[x, y, _]: &[f64; 3]| match direction {
@@ -81,6 +76,7 @@ pub fn floating(map: &StoredMap, direction: Direction, points: &[[f64; 3]]) -> V
 pub fn exact(map: &StoredMap, direction: Direction, points: &[[Rational; 3]]) -> Vec<Image<[Rational; 3]>> {
     let one = |point: &[Rational; 3]| match map {
         StoredMap::Foliation(map) => exact_in_map(map, direction, point).map_err(NoImage::Map),
+        StoredMap::Moved(map) => exact_in_map(map.as_bijection(), direction, point).map_err(NoImage::Map),
         StoredMap::Shell(shell) => exact_in_shell(shell, direction, point).map_err(NoImage::Shell),
         StoredMap::Planar(PlanarMap::Harmonic(map)) => exact_in_plane(map, direction, point).map_err(NoImage::Planar),
         StoredMap::Planar(PlanarMap::Composite(_) | PlanarMap::Complex(_)) => Err(NoImage::NotRational),
@@ -88,8 +84,16 @@ pub fn exact(map: &StoredMap, direction: Direction, points: &[[Rational; 3]]) ->
     points.par_iter().map(one).collect()
 }
 
+fn floating_in_map(map: &dyn Bijection, direction: Direction, points: &[[f64; 3]]) -> Vec<Image<Enclosed>> {
+    let images = match direction {
+        Direction::Forward => map.forward_batch(points),
+        Direction::Inverse => map.inverse_batch(points),
+    };
+    images.into_iter().map(|image| image.map_err(NoImage::Map)).collect()
+}
+
 fn exact_in_map(
-    map: &FoliationMap,
+    map: &dyn Bijection,
     direction: Direction,
     point: &[Rational; 3],
 ) -> Result<[Rational; 3], EvaluationError> {

@@ -4,7 +4,6 @@ pub mod compose;
 mod images;
 
 use homeo::certificate::{FoliationMap, PlanarMap, StoredMap};
-use homeo::map::Bijection;
 use homeo::progress::Progress;
 use homeo_core::number::Rational;
 use homeo_verify::Claim;
@@ -154,6 +153,7 @@ fn check_columns(
         StoredMap::Foliation(map) => (map.target().name(), map.target().dimension(), is_flat(map)),
         StoredMap::Shell(_) => ("shell", 3, false),
         StoredMap::Planar(_) => ("polygon", 2, true),
+        StoredMap::Moved(_) => ("moved mesh", 3, false),
     };
     if dimension == 2 && (options.inverse || matches!(map, StoredMap::Planar(_))) {
         return match (0..rows).find(|&row| !is_planar(row)) {

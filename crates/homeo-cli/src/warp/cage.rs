@@ -1,26 +1,29 @@
 //! Meshes and points in space that move with a cage, and tetrahedral meshes that follow their boundary.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use homeo::cage::{
     CageError, CagePair, DeformError, Deformed, Moved, Steps, Verdict, deform, harmonic_extension, judge,
 };
+use homeo::certificate::{Provenance, write_moved};
 use homeo::progress::Progress;
 use homeo::shape::{PolyhedronPath, StraightPolyhedra, TurningPolyhedra};
 use homeo_core::io::Format;
 use homeo_core::mesh::TetrahedronComplex;
+use homeo_verify::Claim;
 use serde_json::json;
 
-use super::moved::{Input, refused, write};
+use super::moved::{Input, ONLY_MESHES, refused, write};
 use crate::answer::Answer;
 use crate::args::{MethodName, PathName, WarpArgs};
 use crate::failure::{Failure, Result};
 use crate::mesh_input::{self, Cells, MeshInput, Requested};
-use crate::outputs::{Outputs, check_target};
+use crate::outputs::{Outputs, check_targets};
 use crate::points::PointFormat;
+use crate::proof;
 use crate::refuse;
 use crate::session::Session;
-use crate::text::{Lines, stages};
+use crate::text::{Lines, file_name, stages};
 
 /// Whether cages are asked for, not polygons.
 pub fn is_wanted(options: &WarpArgs) -> bool {
@@ -43,9 +46,9 @@ pub fn refuse_options(options: &WarpArgs) -> Result<()> {
 
 /// Moves a mesh or points, and judges what comes out.
 pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Result<Answer> {
-    let output = check_options(options)?;
+    check_options(options)?;
     if options.method == Some(MethodName::Harmonic) {
-        return run_harmonic(session, options, output, outputs);
+        return run_harmonic(session, options, outputs);
     }
     let (Some(from), Some(to)) = (&options.polygons.from, &options.polygons.to) else {
         return Err(Failure::usage("give --from and --to: the cages before and after"));
@@ -65,11 +68,11 @@ pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Resu
     if let Some(failure) = refused(&done.verdict, Some(done.steps), &input) {
         return Err(failure);
     }
-    finish(session, options, input, done, output, outputs)
+    finish(session, options, input, done, outputs)
 }
 
 /// A tetrahedral mesh follows its boundary.
-fn run_harmonic(session: &Session, options: &WarpArgs, output: &Path, outputs: &mut Outputs) -> Result<Answer> {
+fn run_harmonic(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Result<Answer> {
     let Some(to) = &options.polygons.to else {
         return Err(Failure::usage("give --to: the boundary of the mesh after it has moved"));
     };
@@ -91,7 +94,7 @@ fn run_harmonic(session: &Session, options: &WarpArgs, output: &Path, outputs: &
     if let Some(failure) = refused(&verdict, None, &input) {
         return Err(failure);
     }
-    finish(session, options, input, Deformed { positions, steps: 1, verdict, crossing_cage: None }, output, outputs)
+    finish(session, options, input, Deformed { positions, steps: 1, verdict, crossing_cage: None }, outputs)
 }
 
 /// Where the boundary goes: the surface has the vertices of the mesh, or those on its boundary, in the same order.
@@ -118,13 +121,12 @@ fn boundary_places(complex: &TetrahedronComplex, input: &Input, surface: &MeshIn
     Ok(after)
 }
 
-fn check_options(options: &WarpArgs) -> Result<&Path> {
+fn check_options(options: &WarpArgs) -> Result<()> {
     let refused = [
         ("--method complex", options.method == Some(MethodName::Complex)),
         ("--degree", options.degree.is_some()),
         ("--landmarks", options.landmarks.is_some()),
         ("--pair", options.polygons.pair.is_some()),
-        ("--map", options.map.is_some()),
         ("--field", options.field.is_some()),
         ("--triangles", options.polygons.triangles.is_some()),
         ("--middle", options.polygons.middle.is_some()),
@@ -136,19 +138,27 @@ fn check_options(options: &WarpArgs) -> Result<&Path> {
     if options.device == crate::args::DeviceName::Gpu {
         return Err(Failure::usage(super::device::ONLY_PICTURES));
     }
-    let Some(output) = &options.output else { return Err(Failure::usage("give -o OUT for what has moved")) };
+    let outputs: Vec<&Path> = [&options.output, &options.map].into_iter().filter_map(|path| path.as_deref()).collect();
+    if outputs.is_empty() {
+        return Err(Failure::usage("give -o OUT for what has moved, or --map for the map"));
+    }
     let mut inputs = vec![options.input.as_path()];
     inputs.extend([&options.polygons.from, &options.polygons.to].into_iter().flatten().map(|path| path.as_path()));
-    check_target(output, &inputs)?;
+    check_targets(&outputs, &inputs)?;
     if super::picture::is_picture(&options.input) {
         return Err(Failure::usage("pictures move with polygons; cages move meshes and points in space"));
     }
-    if PointFormat::of_path(&options.input).is_ok() {
-        PointFormat::of_path(output)?;
-    } else if Format::of_path(output).is_none() {
-        return Err(Failure::usage(format!("{}: the extension names no mesh format", output.display())));
+    let are_points = PointFormat::of_path(&options.input).is_ok();
+    if are_points && options.map.is_some() {
+        return Err(Failure::usage(ONLY_MESHES));
     }
-    Ok(output)
+    match &options.output {
+        Some(output) if are_points => PointFormat::of_path(output).map(|_| ()),
+        Some(output) if Format::of_path(output).is_none() => {
+            Err(Failure::usage(format!("{}: the extension names no mesh format", output.display())))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn read_cages(session: &Session, from: &Path, to: &Path) -> Result<CagePair> {
@@ -206,20 +216,48 @@ fn explain(session: &Session, error: &DeformError) -> Failure {
     }
 }
 
+/// Writes the map and has it checked, before anything else is written.
+fn certify(
+    session: &Session,
+    options: &WarpArgs,
+    input: &Input,
+    done: &Deformed,
+    path: &Path,
+    outputs: &mut Outputs,
+) -> Result<Claim> {
+    let map = input.map(&done.positions)?;
+    let cages = [&options.polygons.from, &options.polygons.to].map(|path| path.as_deref().map(file_name));
+    let method = if options.method == Some(MethodName::Harmonic) { "harmonic" } else { "mean-value" };
+    let provenance = Provenance {
+        source_name: file_name(&options.input),
+        program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
+        options: json!({"method": method, "from": cages[0], "to": cages[1], "steps": done.steps}),
+    };
+    proof::write_and_decide(session, path, outputs, |mut out| write_moved(&map, &provenance, &mut out))
+}
+
 fn finish(
     session: &Session,
     options: &WarpArgs,
     input: Input,
     done: Deformed,
-    output: &Path,
     outputs: &mut Outputs,
 ) -> Result<Answer> {
     session.check()?;
     let moved = input.described();
     let checked = input.checked();
-    write(session, input, done.positions, output, outputs)?;
+    let claim = match &options.map {
+        Some(path) => Some(certify(session, options, &input, &done, path, outputs)?),
+        None => None,
+    };
+    if let Some(output) = &options.output {
+        write(session, input, done.positions, output, outputs)?;
+    }
     session.end_stage();
     let mut lines = Lines::default();
+    if let Some(claim) = &claim {
+        lines.add("certificate", proof::holds(claim));
+    }
     lines.add("moved", &moved);
     let is_judged = done.verdict != Verdict::NothingToJudge;
     lines.add("checked", if is_judged { checked } else { "nothing: points make no mesh that could fold" });
@@ -228,12 +266,16 @@ fn finish(
         lines.add("cages", format!("the one at time {time} meets itself; the check of the mesh does not rest on it"));
     }
     lines.add("time", stages(&session.seconds()));
-    lines.add("written", output.display());
+    for path in [&options.output, &options.map].into_iter().flatten() {
+        lines.add("written", path.display());
+    }
+    let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
     let fields = json!({
         "target": if options.method == Some(MethodName::Harmonic) { "boundary" } else { "cage" },
         "steps": done.steps, "crossing_cage": done.crossing_cage,
         "checked": {"holds": is_judged, "statement": if is_judged { Some(checked) } else { None }},
-        "quality": {"moved": moved}, "output": output.display().to_string(),
+        "certificate": claim.as_ref().map(proof::claim_json),
+        "quality": {"moved": moved}, "output": shown(&options.output), "map": shown(&options.map),
     });
     Ok(Answer::new(fields, lines.below(&format!("{} warped", options.input.display()))))
 }

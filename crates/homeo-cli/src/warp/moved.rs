@@ -3,6 +3,9 @@
 use std::path::Path;
 
 use homeo::cage::{Moved, Verdict, judge};
+use homeo::certificate::MovedMap;
+use homeo::input::SourceMesh;
+use homeo::map::MovedMesh;
 use homeo::progress::Progress;
 use homeo_core::io::{Format, WriteOptions, read_mesh_bytes, write_mesh_to};
 use serde_json::json;
@@ -16,6 +19,9 @@ use crate::session::Session;
 
 /// How many elements are listed.
 const SHOWN: usize = 10;
+
+/// Why points have no map file.
+pub const ONLY_MESHES: &str = "--map is for meshes: points make no mesh that the map could be one of";
 
 /// What moves.
 pub enum Input {
@@ -57,6 +63,21 @@ impl Input {
                 Cells::Tetrahedra(complex) => Moved::Volume(complex),
             },
         }
+    }
+
+    /// The map onto the mesh with its vertices at these places.
+    pub fn map(&self, after: &[[f64; 3]]) -> Result<MovedMap> {
+        let (before, after) = (self.positions().to_vec(), after.to_vec());
+        let map = match self.moved() {
+            Moved::Points => return Err(Failure::usage(ONLY_MESHES)),
+            Moved::Surface(complex) => {
+                MovedMesh::new(SourceMesh::new(before, complex.clone()), after).map(MovedMap::from)
+            }
+            Moved::Volume(complex) => {
+                MovedMesh::new(SourceMesh::new(before, complex.clone()), after).map(MovedMap::from)
+            }
+        };
+        map.map_err(|error| Failure::limits("no-map", format!("{error}; nothing was written")))
     }
 
     /// In words.

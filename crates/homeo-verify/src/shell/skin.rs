@@ -5,10 +5,8 @@
 
 use super::{Corner, Shell, edge, try_weights};
 use crate::complex::UnionFind;
-use crate::number::{Point, orientation_3d, steps_orientation};
-use crate::triangles::{BoxTree, Triangle, bounds, triangles_meet, triangles_meet_beyond};
+use crate::triangles::{BoxTree, Triangle, bounds, do_clash};
 use crate::verdict::{Checked, check};
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// A triangle of the skin by its corners, and its prism.
@@ -23,7 +21,7 @@ impl Shell<'_> {
         let tree = BoxTree::new(&boxes);
         for a in 0..faces.len() {
             for b in tree.meeting(&boxes[a]).into_iter().filter(|&b| b < a) {
-                if self.do_clash([&faces[a], &faces[b]], [&triangles[a], &triangles[b]]) {
+                if do_clash([&faces[a].0, &faces[b].0], |corner| self.point(corner)) {
                     return Err(self.refuted("E1", "bottoms, tops or walls of the shell meet", faces[a].1));
                 }
             }
@@ -51,21 +49,6 @@ impl Shell<'_> {
         faces
     }
 
-    /// Whether two triangles of the skin meet in more than their common corners and edge.
-    fn do_clash(&self, [a, b]: [&Face; 2], [p, q]: [&Triangle; 2]) -> bool {
-        let (common, rest): (Vec<Corner>, Vec<Corner>) = a.0.iter().partition(|corner| b.0.contains(corner));
-        match common[..] {
-            [] => triangles_meet(p, q),
-            [corner] => triangles_meet_beyond(self.point(corner), p, q),
-            [from, to] => {
-                let other = b.0.iter().find(|corner| !common.contains(corner));
-                let thirds = [rest[0], other.copied().unwrap_or(rest[0])];
-                are_folded([from, to].map(|c| self.point(c)), thirds.map(|c| self.point(c)))
-            }
-            _ => true,
-        }
-    }
-
     /// E2: a point of each part of the skin has no other preimage in the shell. Parts are joined by edges.
     fn check_covers(&self, faces: &[Face], triangles: &[Triangle]) -> Checked {
         let mut parts = UnionFind::new(faces.len());
@@ -88,12 +71,4 @@ impl Shell<'_> {
         }
         check(!faces.is_empty(), "E2", "the shell has no surface", &[], &[])
     }
-}
-
-/// Whether two triangles over a common edge lie in one plane, on the same side of it.
-fn are_folded([from, to]: [Point; 2], [third, other]: [Point; 2]) -> bool {
-    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let side = |p: Point, axis: Point| steps_orientation([[from, to], [from, p], [[0.0; 3], axis]]);
-    orientation_3d(from, to, third, other) == Ordering::Equal
-        && axes.into_iter().all(|axis| side(third, axis) == side(other, axis))
 }

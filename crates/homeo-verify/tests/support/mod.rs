@@ -5,6 +5,7 @@ pub mod build;
 pub mod bundles;
 pub mod clip;
 pub mod immersed;
+pub mod moved;
 pub mod mutants;
 pub mod oracle;
 pub mod plane;
@@ -78,6 +79,9 @@ impl Map {
 
     /// Vertices per cell.
     pub fn size(&self) -> usize {
+        if self.text("target") == "space" {
+            return self.manifest["dimension"].as_u64().unwrap_or_default() as usize + 1;
+        }
         if ["square", "disk", "shell", "section", "immersed-shell", "embedded-shell"]
             .contains(&self.text("target").as_str())
         {

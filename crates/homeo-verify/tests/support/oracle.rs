@@ -145,7 +145,7 @@ fn without(cell: &[u32], v: u32) -> Vec<u32> {
     cell.iter().copied().filter(|&w| w != v).collect()
 }
 
-fn cells_at_facets(cells: &[Vec<u32>]) -> BTreeMap<Face, Vec<usize>> {
+pub fn cells_at_facets(cells: &[Vec<u32>]) -> BTreeMap<Face, Vec<usize>> {
     let mut map: BTreeMap<Face, Vec<usize>> = BTreeMap::new();
     for (c, cell) in cells.iter().enumerate() {
         cell.iter().for_each(|&v| map.entry(without(cell, v).into_iter().collect()).or_default().push(c));
@@ -177,7 +177,7 @@ fn component_count(cells: &[Vec<u32>]) -> usize {
 }
 
 /// Components, Euler number and boundary components, if the complex is a manifold: by links of links.
-fn manifold_type(cells: &[Vec<u32>]) -> Option<(usize, i64, usize)> {
+pub fn manifold_type(cells: &[Vec<u32>]) -> Option<(usize, i64, usize)> {
     let Some(size) = cells.first().map(Vec::len) else { return Some((0, 0, 0)) };
     let sets: BTreeSet<Face> = cells.iter().map(|cell| cell.iter().copied().collect()).collect();
     if sets.len() != cells.len() || sets.iter().any(|set| set.len() != size) {

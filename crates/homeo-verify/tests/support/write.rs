@@ -111,6 +111,10 @@ pub fn entries(map: &Map) -> Vec<(String, Vec<u8>)> {
         }
         return entries;
     }
+    if map.text("kind") == "moved-mesh" {
+        add("target_positions", "<f8", map.target_positions.len(), 3, little_endian!(map.target_positions));
+        return entries;
+    }
     if map.text("kind") == "piecewise-linear" {
         add("target_positions", "<f8", map.target_positions.len(), size - 1, little_endian!(map.target_positions));
         return entries;

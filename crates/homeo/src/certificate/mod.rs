@@ -13,15 +13,17 @@ pub use bundle::{StoredSection, write_bundle};
 pub use read::{MapFileError, read_map};
 pub use read_hyperbolic::{StoredStructure, kind_of, read_hyperbolic};
 pub use write::{
-    content_sha256, write_complex, write_composite, write_harmonic, write_hyperbolic, write_map, write_planar,
-    write_shell,
+    content_sha256, write_complex, write_composite, write_harmonic, write_hyperbolic, write_map, write_moved,
+    write_planar, write_shell,
 };
 
 use homeo_core::number::Rational;
 
 use crate::complex::ComplexMap;
 use crate::composite::CompositeMap;
-use crate::map::{Bijection, Enclosed, EvaluationError, Foliation, HarmonicMap, PlanarBijection, Shell, Target};
+use crate::map::{
+    Bijection, Enclosed, EvaluationError, Foliation, HarmonicMap, MovedMesh, PlanarBijection, Shell, Target,
+};
 
 /// What a map file holds.
 #[derive(Debug)]
@@ -33,6 +35,8 @@ pub enum StoredMap {
     Shell(Shell),
     /// A map between planar domains.
     Planar(PlanarMap),
+    /// A mesh in space that has moved.
+    Moved(MovedMap),
 }
 
 /// A map between planar domains.
@@ -73,6 +77,37 @@ impl From<CompositeMap> for PlanarMap {
 impl From<ComplexMap> for PlanarMap {
     fn from(map: ComplexMap) -> Self {
         Self::Complex(map)
+    }
+}
+
+/// A mesh in space and where it has moved to.
+#[derive(Debug)]
+pub enum MovedMap {
+    /// Of triangles.
+    Surface(MovedMesh<3>),
+    /// Of tetrahedra.
+    Volume(MovedMesh<4>),
+}
+
+impl MovedMap {
+    /// The map, to be evaluated.
+    pub fn as_bijection(&self) -> &dyn Bijection {
+        match self {
+            Self::Surface(map) => map,
+            Self::Volume(map) => map,
+        }
+    }
+}
+
+impl From<MovedMesh<3>> for MovedMap {
+    fn from(map: MovedMesh<3>) -> Self {
+        Self::Surface(map)
+    }
+}
+
+impl From<MovedMesh<4>> for MovedMap {
+    fn from(map: MovedMesh<4>) -> Self {
+        Self::Volume(map)
     }
 }
 
@@ -118,11 +153,14 @@ macro_rules! either {
 }
 pub(crate) use either;
 
-impl Bijection for FoliationMap {
-    fn target(&self) -> Target {
+impl FoliationMap {
+    /// What the mesh is mapped onto.
+    pub fn target(&self) -> Target {
         either!(self, map => map.target())
     }
+}
 
+impl Bijection for FoliationMap {
     fn forward(&self, point: [f64; 3]) -> Result<Enclosed, EvaluationError> {
         either!(self, map => map.forward(point))
     }

@@ -11,13 +11,13 @@ use serde_json::Value;
 use zip::{CompressionMethod, ZipArchive};
 
 use super::npy::decode;
-use super::{FoliationMap, StoredMap};
+use super::{FoliationMap, MovedMap, StoredMap};
 use crate::complex::{ComplexMap, EdgeSpeeds};
 use crate::composite::{CompositeMap, Tiling};
 use crate::input::SourceMesh;
 use crate::map::{
-    BoundaryPoint, Centre, Circuit, Foliation, FoliationParts, HalfParts, HarmonicMap, Middle, SHARE_BITS, Section,
-    Shell, ShellParts, Target, is_flat,
+    BoundaryPoint, Centre, Circuit, Foliation, FoliationParts, HalfParts, HarmonicMap, Middle, MovedMesh, SHARE_BITS,
+    Section, Shell, ShellParts, Target, is_flat,
 };
 use crate::refine::{Carrier, RefinedMesh};
 
@@ -100,6 +100,11 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
             is_of_dimension(&text("target"), 2)?;
             Ok(StoredMap::Planar(file.complex()?.into()))
         }
+        "moved-mesh" => match number("dimension") {
+            Some(2) => Ok(StoredMap::Moved(MovedMap::Surface(file.moved()?))),
+            Some(3) => Ok(StoredMap::Moved(MovedMap::Volume(file.moved()?))),
+            _ => Err(MapFileError::Manifest("a mesh that has moved has dimension 2 or 3".to_owned())),
+        },
         "hyperbolic" => Err(MapFileError::NoMap),
         other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
     }
@@ -342,6 +347,11 @@ impl<'b> File<'b> {
             ));
         }
         Ok(HalfParts { domain, boundary, seam_points, inner, images, triangles, shifts })
+    }
+
+    fn moved<const K: usize>(&mut self) -> Result<MovedMesh<K>, MapFileError> {
+        let (source, after) = (self.source::<K>()?, self.points("target_positions")?);
+        MovedMesh::new(source, after).map_err(|e| MapFileError::Inconsistent(e.to_string()))
     }
 
     fn shell(&mut self, target: &str) -> Result<Shell, MapFileError> {

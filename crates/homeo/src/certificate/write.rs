@@ -12,11 +12,11 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::npy::{Element, encode};
-use super::{FoliationMap, PlanarMap, Provenance, either};
+use super::{FoliationMap, MovedMap, PlanarMap, Provenance, either};
 use crate::complex::ComplexMap;
 use crate::composite::CompositeMap;
 use crate::input::SourceMesh;
-use crate::map::{Bijection, Centre, Foliation, HarmonicMap, PlanarBijection, Section, Shell};
+use crate::map::{Centre, Foliation, HarmonicMap, MovedMesh, PlanarBijection, Section, Shell};
 
 /// Writes a map with its certificate. The same map gives the same bytes.
 ///
@@ -53,6 +53,46 @@ pub fn write_shell(shell: &Shell, provenance: &Provenance, out: &mut (impl Write
     if let Some(section) = shell.section() {
         archive.mesh(["section_positions", "section_cells"], section)?;
     }
+    archive.finish()
+}
+
+/// Writes a mesh that has moved, with what its certificate needs. The same map gives the same bytes.
+///
+/// # Errors
+/// When `out` cannot be written.
+///
+/// # Example
+/// ```
+/// use homeo::certificate::{MovedMap, Provenance, StoredMap, read_map, write_moved};
+/// use homeo::input::SourceMesh;
+/// use homeo::map::MovedMesh;
+/// use homeo_core::mesh::TriangleComplex;
+/// let cells = TriangleComplex::from_indices(3, &[[0, 1, 2]])?;
+/// let source = SourceMesh::new(vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], cells);
+/// let after = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 2.0, 0.0]];
+/// let map = MovedMap::from(MovedMesh::new(source, after.clone())?);
+/// let mut file = std::io::Cursor::new(Vec::new());
+/// write_moved(&map, &Provenance::default(), &mut file)?;
+/// let Ok(StoredMap::Moved(MovedMap::Surface(back))) = read_map(file.get_ref()) else { panic!("another kind") };
+/// assert_eq!(back.moved().positions(), after);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_moved(map: &MovedMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
+    match map {
+        MovedMap::Surface(map) => write_moved_mesh(map, provenance, out),
+        MovedMap::Volume(map) => write_moved_mesh(map, provenance, out),
+    }
+}
+
+fn write_moved_mesh<const K: usize>(
+    map: &MovedMesh<K>,
+    provenance: &Provenance,
+    out: &mut (impl Write + Seek),
+) -> io::Result<()> {
+    let claim = Claim { kind: "moved-mesh", target: "space", centre: None, length_unit: 1.0 };
+    let mut archive = Archive::begin(map.source(), &claim, provenance, out)?;
+    let after = map.moved().positions();
+    archive.array("target_positions", &[after.len(), 3], after.as_flattened().iter().copied())?;
     archive.finish()
 }
 

@@ -4,7 +4,7 @@ use homeo_core::mesh::{CellId, VertexId};
 
 use super::{CellList, CellMesh, Leaf, ReportData, TargetShape, VerdictWords};
 use crate::certificate::{FoliationMap, either};
-use crate::map::{Bijection, Foliation, Target, distortions};
+use crate::map::{Foliation, Target, distortions};
 
 /// How many leaves a report draws at most.
 const LEAVES: usize = 160;

@@ -323,10 +323,6 @@ pub(super) fn tetrahedral_coordinates(q: &[Rational; 3]) -> ([Rational; 4], Rati
 }
 
 impl<const K: usize> Bijection for Foliation<K> {
-    fn target(&self) -> Target {
-        self.parts().target
-    }
-
     fn forward(&self, point: [f64; 3]) -> Result<Enclosed, EvaluationError> {
         self.forward_float(point)
     }

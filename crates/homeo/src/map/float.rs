@@ -5,7 +5,7 @@ use homeo_core::number::Rational;
 use homeo_core::predicate::Sign;
 
 use super::evaluate::{diamond_coordinates, tetrahedral_coordinates};
-use super::exact::{ExactLocation, Sense, whole};
+use super::exact::{Sense, whole};
 use super::fast::{FastLeaf, Undecided};
 use super::locate::{FloatLocation, Located, rational_point};
 use super::target::BALL_CORNERS;
@@ -55,25 +55,8 @@ impl<const K: usize> Foliation<K> {
         if let Some(enclosed) = fast.filter(|enclosed| enclosed.radius <= self.accuracy()) {
             return Ok(enclosed);
         }
-        let image = match located {
-            Located::Exact(at) => self.image_exact(at),
-            Located::Float(at) => self.image_exact(&self.exactly(at, point)?),
-        };
-        Ok(self.rounded_image(&image))
-    }
-
-    /// The exact location that a floating-point one stands for.
-    fn exactly(&self, at: &FloatLocation<K>, point: [f64; 3]) -> Result<ExactLocation<K>, EvaluationError> {
-        if at.is_exact {
-            let weights = at.weights.map(|w| Rational::from_f64(w).unwrap_or(Rational::ZERO));
-            return Ok(ExactLocation { cell: at.cell, weights: whole(&weights) });
-        }
-        let (source, mesh) = (self.source(), &self.parts().mesh);
-        // A point near a surface stands for the nearest point of the surface.
-        if K == 3 {
-            return self.locator.nearest_exact(source, mesh, point);
-        }
-        self.locator.exact(source, mesh, &rational_point(point))
+        let at = self.locator.exactly(self.source(), &self.parts().mesh, located, point)?;
+        Ok(self.rounded_image(&self.image_exact(&at)))
     }
 
     pub(super) fn fast_image(&self, at: &FloatLocation<K>) -> Result<Enclosed, Undecided> {

@@ -83,6 +83,11 @@ impl<const K: usize> Foliation<K> {
         &self.source
     }
 
+    /// What the mesh is mapped onto.
+    pub fn target(&self) -> Target {
+        self.parts.target
+    }
+
     /// Gluing of the foliated mesh.
     pub fn adjacency(&self) -> &Adjacency<K> {
         &self.adjacency

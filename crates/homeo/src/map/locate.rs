@@ -135,6 +135,26 @@ impl<const K: usize> Locator<K> {
         if K == 3 { self.float_on_surface(source, mesh, point) } else { self.float_in_volume(source, mesh, point) }
     }
 
+    /// The exact location of a point that a floating-point query has found.
+    pub fn exactly(
+        &self,
+        source: &SourceMesh<K>,
+        mesh: &RefinedMesh<K>,
+        located: &Located<K>,
+        point: [f64; 3],
+    ) -> Result<ExactLocation<K>, EvaluationError> {
+        match located {
+            Located::Exact(at) => Ok(at.clone()),
+            Located::Float(at) if at.is_exact => {
+                let weights = at.weights.map(|w| Rational::from_f64(w).unwrap_or(Rational::ZERO));
+                Ok(ExactLocation { cell: at.cell, weights: whole(&weights) })
+            }
+            // A point near a surface stands for the nearest point of the surface.
+            Located::Float(_) if K == 3 => self.nearest_exact(source, mesh, point),
+            Located::Float(_) => self.exact(source, mesh, &rational_point(point)),
+        }
+    }
+
     fn float_in_volume(
         &self,
         source: &SourceMesh<K>,

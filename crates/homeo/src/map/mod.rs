@@ -12,6 +12,7 @@ mod float;
 mod foliation;
 mod harmonic;
 mod locate;
+mod moved;
 mod nearest;
 mod planar;
 mod sample;
@@ -26,6 +27,7 @@ pub use harmonic::{
     SHARE_BITS,
 };
 pub(crate) use harmonic::{distortion as planar_distortion, neighbours};
+pub use moved::{MovedMesh, MovedMeshError};
 pub(crate) use nearest::is_flat;
 pub use planar::{Enclosed2, PlanarBijection, PlanarEvaluationError};
 pub use sample::{LeafPolyline, distortions};
@@ -55,6 +57,9 @@ pub enum EvaluationError {
     /// The point does not lie in the target.
     #[error("the point lies outside the {0}")]
     OutsideTarget(Target),
+    /// The point does not lie in the mesh after it has moved.
+    #[error("the point lies outside the moved mesh")]
+    OutsideMoved,
     /// A coordinate is not finite.
     #[error("the point has a coordinate that is not a finite number")]
     NotFinite,
@@ -66,11 +71,8 @@ pub enum EvaluationError {
     NotCovered(u32),
 }
 
-/// A homeomorphism from a mesh onto a standard shape.
+/// A homeomorphism from a mesh onto a standard shape, or onto where the mesh has moved to.
 pub trait Bijection: Send + Sync {
-    /// What the mesh is mapped onto.
-    fn target(&self) -> Target;
-
     /// Image of a point of the mesh, with a bound of the error.
     ///
     /// A point near a surface in space stands for the nearest point of the surface.

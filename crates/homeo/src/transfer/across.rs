@@ -7,7 +7,7 @@ use super::places::{Composite, Place};
 use super::points::{Seams, read_at_corners, read_at_triangles, read_at_vertices};
 use super::{Status, TransferError, Transferred, check_rows};
 use crate::input::SourceMesh;
-use crate::map::{Bijection, Foliation};
+use crate::map::Foliation;
 use crate::progress::Progress;
 
 /// Reads the attributes of one disk off for another: both are mapped onto one shape, and the composite of one map and the

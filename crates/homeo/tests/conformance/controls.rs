@@ -62,10 +62,6 @@ impl Broken<'_> {
 }
 
 impl Bijection for Broken<'_> {
-    fn target(&self) -> Target {
-        self.map.target()
-    }
-
     fn forward(&self, point: [f64; 3]) -> Result<Enclosed, EvaluationError> {
         let all = Enclosed { point: [0.5, 0.5, 0.0], radius: 1.0 };
         if self.defect == Defect::TakesAll { Ok(all) } else { self.disturbed(self.map.forward(point)) }
@@ -95,12 +91,12 @@ fn broken_laws(map: &Foliation<3>, defect: Defect) -> Vec<usize> {
     let from = places.sample(map, 60, 5);
     let to = target_sample(Target::Square, 60, 6);
     let answers = [
-        laws::source_points_come_back(&broken, &from),
-        laws::target_points_come_back(&broken, &to, &|p| places.is_on_boundary(p)),
-        laws::floating_images_enclose(&broken, &from).map(|_| ()),
-        laws::floating_preimages_enclose(&broken, &to),
-        laws::outside_is_refused(&broken, [99.0, 0.0, 0.0]),
-        laws::answers_are_the_same(map, &broken, &from, &to),
+        laws::source_points_come_back(&broken, &Target::Square, &from),
+        laws::target_points_come_back(&broken, &Target::Square, &to, &|p| places.is_on_boundary(p)),
+        laws::floating_images_enclose(&broken, &Target::Square, &from).map(|_| ()),
+        laws::floating_preimages_enclose(&broken, &Target::Square, &to),
+        laws::outside_is_refused(&broken, &Target::Square, [99.0, 0.0, 0.0]),
+        laws::answers_are_the_same([map, &broken], &Target::Square, &from, &to),
     ];
     answers.iter().enumerate().filter(|(_, answer)| answer.is_err()).map(|(law, _)| law).collect()
 }

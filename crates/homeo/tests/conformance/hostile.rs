@@ -12,7 +12,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 use crate::random::Random;
 use crate::shapes::{Shape, balls, disks};
 use crate::shells;
-use crate::{planar, planar_holes};
+use crate::{moved, planar, planar_holes};
 
 fn file<const K: usize>(shape: &Shape<K>, target: Target) -> Vec<u8>
 where
@@ -36,6 +36,8 @@ fn files() -> Vec<Vec<u8>> {
         planar::small_file(true),
         planar_holes::small_file(),
         planar::small_complex_file(),
+        moved::small_files().0,
+        moved::small_files().1,
     ]
 }
 
@@ -76,6 +78,11 @@ fn ask(map: &StoredMap) {
                 let _ = (shell.to_middle(point), shell.to_source(point), shell.is_inside(point));
                 let at = shell.project_exact(&exact);
                 let _ = at.map(|at| (shell.unproject_exact(&at), shell.to_source_exact(&at)));
+            }
+            StoredMap::Moved(moved) => {
+                let map = moved.as_bijection();
+                let _ = (map.forward(point), map.inverse(point));
+                let _ = (map.forward_exact(&exact), map.inverse_exact(&exact));
             }
             StoredMap::Planar(planar) => {
                 let ([x, y, _], [u, v, _]) = (point, exact);

@@ -1,11 +1,12 @@
 //! The conformance suite: every kind of mesh, onto every target, under every law.
 //!
 //! `shapes` makes meshes, `points` makes rational points, `laws` says what must hold for them, and
-//! `planar` has the laws of maps between polygons; `controls` shows that the laws notice maps that are wrong.
+//! `moved` has meshes in space that move, `planar` has the laws of maps between polygons; `controls` shows that the laws notice maps that are wrong.
 
 mod controls;
 mod hostile;
 mod laws;
+mod moved;
 mod order;
 mod overlays;
 mod planar;
@@ -61,12 +62,13 @@ where
     let to = target_sample(target, POINTS, 2);
     let law = |what: &str, law: laws::Law| law.unwrap_or_else(|broken| panic!("{what}: {broken}"));
 
-    law("there and back", laws::source_points_come_back(&map, &from));
-    law("back and there", laws::target_points_come_back(&map, &to, &|p| places.is_on_boundary(p)));
-    let compared = laws::floating_images_enclose(&map, &from).unwrap_or_else(|broken| panic!("images: {broken}"));
+    law("there and back", laws::source_points_come_back(&map, &target, &from));
+    law("back and there", laws::target_points_come_back(&map, &target, &to, &|p| places.is_on_boundary(p)));
+    let compared =
+        laws::floating_images_enclose(&map, &target, &from).unwrap_or_else(|broken| panic!("images: {broken}"));
     assert!(compared > 0, "no double lies in the mesh");
-    law("preimages", laws::floating_preimages_enclose(&map, &to));
-    law("outside", laws::outside_is_refused(&map, far_from(&source)));
+    law("preimages", laws::floating_preimages_enclose(&map, &target, &to));
+    law("outside", laws::outside_is_refused(&map, &target, far_from(&source)));
     order::check_directions(&map);
 
     let map = FoliationMap::from(map);
@@ -75,7 +77,7 @@ where
     assert!(bytes == bytes_of(&again), "the file differs when built again with two threads");
     let Ok(StoredMap::Foliation(read)) = read_map(&bytes) else { panic!("what was written can be read") };
     assert!(bytes == bytes_of(&read), "the file differs when read and written");
-    law("after reading", laws::answers_are_the_same(&map, &read, &from, &to));
+    law("after reading", laws::answers_are_the_same([&map, &read], &target, &from, &to));
     match verify_bytes(&bytes) {
         Ok(Verdict::Certified(_)) => {}
         other => panic!("not certified: {other:?}"),

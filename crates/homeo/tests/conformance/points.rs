@@ -101,6 +101,35 @@ impl<'m, const K: usize> Places<'m, K> {
         points
     }
 
+    /// The same of the cells of the mesh itself.
+    pub fn sample_cells(&self, count: usize, seed: u64) -> Vec<SourcePoint> {
+        let mut random = Random::new(seed);
+        let cells = self.source.complex().cells();
+        let mut points: Vec<SourcePoint> = (0..count)
+            .map(|number| {
+                let cell = cells[random.below(cells.len() as u64) as usize];
+                let weights: [i64; K] = weights_of_kind(number, &mut random);
+                self.point(&cell.into_iter().zip(weights.map(Rational::from)).collect::<Vec<_>>())
+            })
+            .collect();
+        points.extend(self.boundary_sample(&mut random, count / 4));
+        points
+    }
+
+    /// Whether a point lies in the mesh, by trying every cell.
+    pub fn is_in_mesh(&self, point: &Point) -> bool {
+        self.source.complex().cells().iter().any(|cell| {
+            let corners = cell.map(|v| exact(self.source.positions()[v.index()]));
+            if K == 3 { is_in_simplex(&corners, point) } else { is_in_tetrahedron(&corners, point) }
+        })
+    }
+
+    /// Points beyond all others along each axis.
+    pub fn far_points(&self) -> Vec<[f64; 3]> {
+        let size = self.source.positions().iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        (0..3).map(|axis| std::array::from_fn(|k| if k == axis { 3.0 * size } else { 0.0 })).collect()
+    }
+
     fn boundary_sample(&self, random: &mut Random, count: usize) -> Vec<SourcePoint> {
         (0..count)
             .map(|_| {
@@ -157,6 +186,15 @@ fn is_in_simplex(corners: &[Point], point: &Point) -> bool {
     let square = dot(&normal, &normal);
     let weights = [&dot(&cross(&offset, &second), &normal) / &square, &dot(&cross(&first, &offset), &normal) / &square];
     dot(&normal, &offset).is_zero() && weights.iter().all(within) && within(&(&weights[0] + &weights[1]))
+}
+
+/// Whether it lies in a tetrahedron: on no outer side of a face.
+fn is_in_tetrahedron(corners: &[Point], point: &Point) -> bool {
+    let side = |i: usize, p: &Point| {
+        let [a, b, c] = [1, 2, 3].map(|k| &corners[(i + k) % 4]);
+        dot(&minus(p, a), &cross(&minus(b, a), &minus(c, a)))
+    };
+    (0..4).all(|i| &side(i, &corners[i]) * &side(i, point) >= Rational::ZERO)
 }
 
 /// Heights of a point above the sides of the exact target: all of them at least 0 inside, one 0 on the boundary.
