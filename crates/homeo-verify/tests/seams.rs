@@ -278,8 +278,8 @@ fn seams_join_the_rings_as_a_tree() {
         (vec![[0, 5], [c, d]], "H6"),
         (vec![[a, b], [0, c]], "H6"),
         // A tree with other ends: points are not on the sides of seams any more, or triangles not where they were.
-        (vec![[a, b], [c, d + 1]], "H6"),
-        (vec![[a + 1, b], [c, d]], "H4"),
+        (vec![[a + 1, b], [c, d]], "H6"),
+        (vec![[a, b], [c, d + 1]], "H4"),
         // Other numbers of seams than the middle has corners for.
         (vec![[a, b]], "unreadable"),
         (vec![], "unreadable"),
