@@ -8,7 +8,7 @@
 //!              asked at vertices; domains may have holes; the inverse is the exact one, enclosed.
 //! Arithmetic:  domains and triangles are decided exactly; the determinant is bounded in affine forms, rounded outwards; what
 //!              guides the search is rounded and decides nothing.
-//! Cost:        for each step boxes times vertices; boxes are hundreds for each vertex.
+//! Cost:        for each step boxes times vertices; boxes are about a hundred for each vertex.
 //! Fails when:  an intermediate polygon is not simple, or a step is not proved within its limits -> [`PartitionError`].
 //! See:         `docs/theory/composite.md`.
 
