@@ -59,7 +59,8 @@ pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Re
         }
         StoredMap::Moved(_) => {
             let message = format!(
-                "{} is a mesh that has moved: the mesh before and what `homeo warp -o` writes are ordinary meshes, which any                  viewer shows; `homeo verify` says what is proved",
+                "{} is a mesh that has moved: the mesh before and what `homeo warp -o` writes are ordinary meshes, which any viewer \
+                 shows; `homeo verify` says what is proved",
                 options.map.display()
             );
             return Err(Failure::input("wrong-kind", message));
