@@ -309,10 +309,11 @@ fn slopes_of_the_search_are_those_of_differences() {
         let plain = step(&pair, &EdgeSpeeds::linear(pair.source.vertex_count()));
         for degree in [2, 3, 5] {
             let search = Search::new(&plain, [&pair.source, &pair.target], degree, &|| false);
-            let free: Vec<f64> = (0..degree * plain.points.len()).map(|_| 2.0 * random.unit() - 1.0).collect();
+            let [free, elsewhere] = [0, 1]
+                .map(|_| -> Vec<f64> { (0..degree * plain.points.len()).map(|_| 2.0 * random.unit() - 1.0).collect() });
             for sharpness in [1.0, 10.0] {
                 let (_, slopes) = search.rise(&free, sharpness);
-                let (_, others) = search.rise(&free, 3.0 * sharpness);
+                let (_, others) = search.rise(&elsewhere, sharpness);
                 let (mut off, mut off_others) = (0.0f64, 0.0f64);
                 for k in 0..free.len() {
                     let at = |step: f64| {
@@ -326,7 +327,7 @@ fn slopes_of_the_search_are_those_of_differences() {
                 }
                 let size = slopes.iter().fold(0.0f64, |size, slope| size.max(slope.abs()));
                 assert!(size > 0.0 && off < 1e-5 * (1.0 + size), "{name} {degree} {sharpness}: {off} of {size}");
-                assert!(off_others > 1e-4 * size, "another sharpness has other slopes: {name} {off_others} of {size}");
+                assert!(off_others > 1e-2 * size, "elsewhere slopes are others: {name} {off_others} of {size}");
             }
         }
     }
