@@ -72,7 +72,6 @@ pub struct ComplexMap {
     target: PlanarDomain,
     tiling: Tiling,
     step: Step,
-    speeds: EdgeSpeeds,
     starts: Vec<Start>,
 }
 
@@ -105,7 +104,7 @@ pub fn bound_complex_jacobian(
     limits: &JacobianLimits,
 ) -> Result<JacobianVerdict, ComplexError> {
     let step = plain_step(pair, &triangulate(&pair.source)?);
-    Ok(fitting(step, speeds)?.bound(limits, 0, &|| false).0)
+    Ok(fitting(step, speeds.clone())?.bound(limits, 0, &|| false).0)
 }
 
 /// The mean value map, with the charts of triangles that tile the source.
@@ -113,12 +112,12 @@ fn plain_step(pair: &DomainPair, tiling: &Tiling) -> Step {
     Step::new(&pair.source, tiling, pair.target.vertices().collect())
 }
 
-fn fitting(step: Step, speeds: &EdgeSpeeds) -> Result<Step, SpeedError> {
+fn fitting(step: Step, speeds: EdgeSpeeds) -> Result<Step, SpeedError> {
     let (edges, found) = (step.points.len(), speeds.control_values().len());
     if edges != found {
         return Err(SpeedError::Edges { edges, found });
     }
-    Ok(step.with_speeds(speeds.clone()))
+    Ok(step.with_speeds(speeds))
 }
 
 impl ComplexMap {
@@ -149,12 +148,11 @@ impl ComplexMap {
             if is_cancelled() {
                 return Err(ComplexError::Stopped);
             }
-            let speeds = search.speeds()?;
             progress.stage("proof");
-            let proved = fitting(step.clone(), &speeds)?;
+            let proved = fitting(step.clone(), search.speeds()?)?;
             // Best speeds that fold at samples do not get better by more samples.
-            let folds = search.folds().into_iter().filter(|&point| pair.source.contains(point));
-            if let Some((point, at_most)) = folds.into_iter().find_map(|point| Some((point, proved.fold_at(point)?))) {
+            let mut folds = search.folds().into_iter().filter(|&point| pair.source.contains(point));
+            if let Some((point, at_most)) = folds.find_map(|point| Some((point, proved.fold_at(point)?))) {
                 return Err(ComplexError::Folds { point, at_most });
             }
             let (verdict, _) = proved.bound(&params.limits, 0, &is_cancelled);
@@ -164,7 +162,7 @@ impl ComplexMap {
             let (point, error) = match verdict {
                 JacobianVerdict::Positive { least, boxes } => {
                     let info = ComplexInfo { least_determinant: least, sampled: search.sampled(), boxes, rounds };
-                    return Ok((Self::of(pair, tiling, proved, speeds), info));
+                    return Ok((Self::of(pair, tiling, proved), info));
                 }
                 JacobianVerdict::Negative { point, at_most, .. } => (point, ComplexError::Folds { point, at_most }),
                 JacobianVerdict::Undecided { point, .. } => (point, ComplexError::Undecided { point }),
@@ -216,20 +214,20 @@ impl ComplexMap {
     /// There are not as many speeds as edges; or the triangles do not tile the source.
     pub fn from_parts(pair: &DomainPair, tiling: Tiling, speeds: EdgeSpeeds) -> Result<Self, ComplexError> {
         check_tiling(&pair.source, &tiling)?;
-        let step = fitting(plain_step(pair, &tiling), &speeds)?;
-        Ok(Self::of(pair, tiling, step, speeds))
+        let step = fitting(plain_step(pair, &tiling), speeds)?;
+        Ok(Self::of(pair, tiling, step))
     }
 
-    fn of(pair: &DomainPair, tiling: Tiling, step: Step, speeds: EdgeSpeeds) -> Self {
+    fn of(pair: &DomainPair, tiling: Tiling, step: Step) -> Self {
         let (source, target) = (pair.source.clone(), pair.target.clone());
-        let mut this = Self { source, target, tiling, step, speeds, starts: Vec::new() };
+        let mut this = Self { source, target, tiling, step, starts: Vec::new() };
         this.starts = invert::starts(&this);
         this
     }
 
     /// The speeds.
     pub fn speeds(&self) -> &EdgeSpeeds {
-        &self.speeds
+        &self.step.speeds
     }
 
     /// The triangles in which the proof is made.

@@ -17,7 +17,6 @@ mod error;
 mod invert;
 mod map;
 mod optimize;
-mod sample;
 mod speed;
 #[cfg(test)]
 mod tests;

@@ -8,18 +8,21 @@
 
 use super::SpeedError;
 use super::ascent;
-use super::sample::{COARSE, FINE, Place, places};
 use super::speed::{EdgeSpeeds, power_form};
-use crate::composite::chart::Step;
+use crate::composite::chart::{Chart, Step};
 use crate::composite::frame::Frame;
 use crate::composite::guide::Guide;
 use crate::composite::line::Line;
 use homeo_core::planar::{PlanarDomain, Point2};
 
 /// Sharpness of the smooth minimum by stages, in units of one over the ratio of areas.
-const STAGES: [f64; 6] = [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0];
+pub(super) const STAGES: [f64; 6] = [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0];
 /// No increment is less than this part of that of linear speeds, lest rounding make two control values one.
 const LEAST_INCREMENT: f64 = 1e-4;
+
+/// Parts of both sides of a chart: enough to begin with, towards the apex and at the far side; and to see what was missed.
+const COARSE: [usize; 2] = [1, 1];
+const FINE: [usize; 2] = [4, 8];
 
 type Pair = [[f64; 2]; 2];
 
@@ -67,19 +70,21 @@ impl<'a> Search<'a> {
         let free = vec![0.0; degree * count];
         let mut this = Self { step, degree, ratio: target / source, samples: Vec::new(), basis, free };
         for chart in step.charts.iter().take_while(|_| !is_cancelled()) {
-            places(chart, COARSE).for_each(|place| this.add(&place));
+            places(COARSE).for_each(|at| this.add(chart, at));
         }
         this
     }
 
     /// One more sample, where the search was too kind.
     pub fn insist(&mut self, point: Point2) {
-        self.add(&Place::of(self.step, point));
+        let (chart, at) = self.step.locate(point);
+        self.add(chart, at);
     }
 
-    fn add(&mut self, place: &Place) {
-        let mut frame = Frame::<f64>::new(self.step, place.chart);
-        let view = frame.look(place.at[0], place.at[1]);
+    /// One more sample, by the coordinates of its chart.
+    fn add(&mut self, chart: &Chart, at: [f64; 2]) {
+        let mut frame = Frame::<f64>::new(self.step, chart);
+        let view = frame.look(at[0], at[1]);
         let sums = frame.sums(&view, &Guide::NONE);
         let plain = frame.local(&view, &sums, &Guide::NONE);
         let response = |(edge, line): (usize, &Line<f64>)| {
@@ -90,7 +95,7 @@ impl<'a> Search<'a> {
         let factor = 1.0 / (plain.turn * self.ratio);
         let is_good = plain.columns.iter().chain(by.iter().flatten()).flatten().all(|x| x.is_finite());
         if is_good && factor.is_finite() {
-            self.samples.push(Sample { point: place.point(self.step), along: plain.columns, by, factor });
+            self.samples.push(Sample { point: self.step.place(chart, at), along: plain.columns, by, factor });
         }
     }
 
@@ -100,13 +105,15 @@ impl<'a> Search<'a> {
         let least = self.least();
         let Ok(speeds) = self.speeds() else { return f64::NEG_INFINITY };
         let step = self.step.clone().with_speeds(speeds);
-        let mut found: Vec<(f64, Place<'a>)> = Vec::new();
+        let mut found: Vec<(f64, &Chart, [f64; 2])> = Vec::new();
         for chart in self.step.charts.iter().take_while(|_| !is_cancelled()) {
-            let valued = places(chart, FINE).map(|place| (place.determinant(&step) / self.ratio, place));
-            found.extend(valued.filter(|(value, _)| *value < least).min_by(|a, b| a.0.total_cmp(&b.0)));
+            let mut frame = Frame::<f64>::new(&step, chart);
+            let mut value = |at: [f64; 2]| frame.evaluate(at[0], at[1], &Guide::NONE).determinant / self.ratio;
+            let valued = places(FINE).map(|at| (value(at), chart, at)).filter(|(value, ..)| *value < least);
+            found.extend(valued.min_by(|a, b| a.0.total_cmp(&b.0)));
         }
-        found.iter().for_each(|(_, place)| self.add(place));
-        found.iter().map(|(value, _)| *value).fold(least, f64::min)
+        found.iter().for_each(|(_, chart, at)| self.add(chart, *at));
+        found.iter().map(|(value, ..)| *value).fold(least, f64::min)
     }
 
     /// Of each edge `d` positive numbers that add up to 1: the softmax of its variables, above the least increment.
@@ -203,13 +210,18 @@ impl<'a> Search<'a> {
     pub fn ascend(&mut self, is_cancelled: &(dyn Fn() -> bool + Sync)) {
         let mut best = (f64::NEG_INFINITY, self.free.clone());
         for sharpness in STAGES {
-            self.free = ascent::ascend(self, &self.free, sharpness, is_cancelled);
+            self.climb(sharpness, is_cancelled);
             let least = self.refine(is_cancelled);
             if least > best.0 {
                 best = (least, self.free.clone());
             }
         }
         self.free = best.1;
+    }
+
+    /// One stage, with samples as they are.
+    pub fn climb(&mut self, sharpness: f64, is_cancelled: &(dyn Fn() -> bool + Sync)) {
+        self.free = ascent::ascend(self, &self.free, sharpness, is_cancelled);
     }
 
     /// The smooth minimum for some free variables, and its slopes by them.
@@ -237,6 +249,14 @@ impl<'a> Search<'a> {
     pub fn speeds(&self) -> Result<EdgeSpeeds, SpeedError> {
         EdgeSpeeds::new(self.degree, self.control_values(&self.increments(&self.free)))
     }
+}
+
+/// Where a chart is looked at; denser towards its apex.
+fn places([radial, across]: [usize; 2]) -> impl Iterator<Item = [f64; 2]> {
+    (0..=radial).flat_map(move |k| {
+        let s = (k as f64 / radial as f64).powi(2);
+        (0..=across).map(move |l| [s, l as f64 / across as f64])
+    })
 }
 
 /// Twice the area.

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use homeo_core::planar::{DomainPair, PlanarDomain, Point2};
 
-use super::optimize::Search;
+use super::optimize::{STAGES, Search};
 use super::*;
 use crate::composite::chart::Step;
 use crate::composite::frame::{Frame, Local};
@@ -331,6 +331,34 @@ fn slopes_of_the_search_are_those_of_differences() {
             }
         }
     }
+}
+
+/// The least determinant at many places of all charts, which are not those that the search looks at.
+fn least_determinant(plain: &Step, speeds: EdgeSpeeds) -> f64 {
+    let own = plain.clone().with_speeds(speeds);
+    let mut least = f64::INFINITY;
+    for chart in &own.charts {
+        let mut frame = Frame::<f64>::new(&own, chart);
+        for k in 0..23 * 23 {
+            let [s, lambda] = [k / 23, k % 23].map(|k| f64::from(k) / 22.0);
+            least = least.min(frame.evaluate(s, lambda, &Guide::NONE).determinant);
+        }
+    }
+    least
+}
+
+/// The control: with samples as they were to begin with the search takes speeds for good that are worse between them.
+#[test]
+fn what_is_missed_between_samples_is_added() {
+    let pair = pair(vec![square()], vec![dart(0.4)]);
+    let plain = step(&pair, &EdgeSpeeds::linear(4));
+    let new = || Search::new(&plain, [&pair.source, &pair.target], 4, &|| false);
+    let (mut blind, mut seeing) = (new(), new());
+    STAGES.into_iter().for_each(|sharpness| blind.climb(sharpness, &|| false));
+    seeing.ascend(&|| false);
+    let [missed, found] = [&blind, &seeing].map(|search| least_determinant(&plain, search.speeds().unwrap()));
+    assert!(missed < 0.5 * blind.sampled()[0], "{missed} {:?}", blind.sampled());
+    assert!(found > missed && found > 0.95 * seeing.sampled()[0], "{found} {:?}", seeing.sampled());
 }
 
 /// Cancels when it is asked for the given time.

@@ -77,8 +77,8 @@ pub(crate) struct Step {
     pub next: Vec<u32>,
     pub previous: Vec<u32>,
     pub charts: Vec<Chart>,
-    /// Of a complex map.
-    pub speeds: Option<EdgeSpeeds>,
+    /// Linear, but for complex maps.
+    pub speeds: EdgeSpeeds,
 }
 
 impl Step {
@@ -90,15 +90,15 @@ impl Step {
         for (from, &to) in next.iter().enumerate() {
             previous[to as usize] = from as u32;
         }
-        let mut step =
-            Self { points, added: tiling.added.clone(), images, next, previous, charts: Vec::new(), speeds: None };
+        let (added, speeds) = (tiling.added.clone(), EdgeSpeeds::linear(next.len()));
+        let mut step = Self { points, added, images, next, previous, charts: Vec::new(), speeds };
         step.charts = tiling.triangles.iter().flat_map(|&triangle| step.charts_of(triangle)).collect();
         step
     }
 
     /// The complex map of the same domains with such speeds, one for each edge.
     pub fn with_speeds(self, speeds: EdgeSpeeds) -> Self {
-        Self { speeds: Some(speeds), ..self }
+        Self { speeds, ..self }
     }
 
     /// Where a corner of a triangle is.

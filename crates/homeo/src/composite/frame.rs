@@ -98,7 +98,7 @@ impl<'a, T: Number> Frame<'a, T> {
                 across,
                 skew: zero,
                 length: Dual([one, zero, zero]),
-                edges: vec![],
+                at_apex: None,
             };
         };
         let towards = T::sight(along, &T::motion(along)).unit;
@@ -107,9 +107,9 @@ impl<'a, T: Number> Frame<'a, T> {
         let across = minus(self.axes[1], scaled(skew, along));
         let length = Dual([T::length(along[0], along[1]), zero, dot(towards, self.axes[1])]);
         self.look_from(position, Some((apex, opposite(towards))));
-        let mut view = View { position, s, along, across, skew, length, edges: vec![] };
-        view.edges = [Touch::Next, Touch::Previous].map(|touch| self.edge_at_apex(touch, &view, lambda)).into();
-        view
+        let view = View { position, s, along, across, skew, length, at_apex: None };
+        let at_apex = [Touch::Next, Touch::Previous].map(|touch| self.edge_at_apex(touch, &view, lambda));
+        View { at_apex: Some(at_apex), ..view }
     }
 
     /// Sums of all vertices and edges.
@@ -118,7 +118,7 @@ impl<'a, T: Number> Frame<'a, T> {
         let [mut weight, first, second] =
             self.regular_sums(guide).map(|[value, x, y]| view.chain(value, [x, y]).with(factor));
         let mut sums = Sums { total: Dual([T::of(0.0); 3]), numerator: [first, second] };
-        for edge in &view.edges {
+        for edge in view.edges() {
             let tangent = view.tangent(edge);
             let share = tangent.times(self.inverse(view, edge.end));
             weight = weight.plus(share);
@@ -129,7 +129,7 @@ impl<'a, T: Number> Frame<'a, T> {
             sums.total = sums.total.plus(tangent.over(view.length));
         }
         // With an apex everything is divided by `s` but its own weight.
-        sums.total = if view.edges.is_empty() { weight } else { sums.total.plus(view.along_dual().times(weight)) };
+        sums.total = if view.at_apex.is_none() { weight } else { sums.total.plus(view.along_dual().times(weight)) };
         for (edge, line) in self.lines.iter().enumerate() {
             let [x, y] = self.added(view, edge, line);
             sums.numerator = [sums.numerator[0].plus(x), sums.numerator[1].plus(y)];
@@ -150,7 +150,7 @@ impl<'a, T: Number> Frame<'a, T> {
         let moved = plus(apply(&guide.linear, view.position), scaled(view.s, rest.map(|c| c.0[0])));
         let columns = [plus(along, added[0]), plus(across, added[1])];
         let image = plus(base, moved);
-        if view.edges.is_empty() {
+        if view.at_apex.is_none() {
             return Local { image, determinant: own + mixed, axes, columns, turn: T::of(1.0) };
         }
         Local { image, determinant: own + mixed / self.turn, axes, columns, turn: self.turn }
@@ -292,13 +292,18 @@ pub(crate) struct View<T> {
     /// Of `e`.
     pub(super) length: Dual<T>,
     /// Both edges at the apex, if that is a vertex.
-    pub(super) edges: Vec<AtApex<T>>,
+    at_apex: Option<[AtApex<T>; 2]>,
 }
 
 impl<T: Number> View<T> {
     /// A function of the plane by `s` and `λ`, or by the coordinates of the plane.
     pub(super) fn chain(&self, value: T, gradient: Vector<T>) -> Dual<T> {
         Dual([value, dot(self.along, gradient), self.s * dot(self.across, gradient)])
+    }
+
+    /// The edges at the apex.
+    pub(super) fn edges(&self) -> impl Iterator<Item = &AtApex<T>> {
+        self.at_apex.iter().flatten()
     }
 
     /// `s`, with an apex.
@@ -308,7 +313,7 @@ impl<T: Number> View<T> {
 
     /// What everything is multiplied by.
     pub(super) fn factor(&self) -> Option<Dual<T>> {
-        self.edges.iter().find_map(|edge| edge.factor)
+        self.edges().find_map(|edge| edge.factor)
     }
 
     /// The half tangent of an edge at the apex, times the factor.
@@ -318,7 +323,7 @@ impl<T: Number> View<T> {
 
     /// What a quotient of sums adds to the images of both vectors under the derivative.
     pub fn columns(&self, rest: [Dual<T>; 2]) -> [Vector<T>; 2] {
-        if self.edges.is_empty() {
+        if self.at_apex.is_none() {
             return [1, 2].map(|k| rest.map(|c| c.0[k]));
         }
         [rest.map(|c| c.0[0] + self.s * c.0[1]), rest.map(|c| c.0[2] - self.skew * c.0[0])]

@@ -26,8 +26,8 @@ const MOST: usize = 8;
 impl Step {
     /// All edges with their speeds; nothing if these are linear.
     pub(super) fn lines<T: Number>(&self) -> Vec<Line<T>> {
-        let Some(speeds) = self.speeds.as_ref().filter(|speeds| speeds.degree() > 1) else { return Vec::new() };
-        (0..self.next.len()).map(|edge| self.line(edge, speeds.quotient(edge))).collect()
+        let count = if self.speeds.degree() > 1 { self.next.len() } else { 0 };
+        (0..count).map(|edge| self.line(edge, self.speeds.quotient(edge))).collect()
     }
 
     /// An edge with a polynomial `q`.
@@ -76,7 +76,7 @@ impl<T: Number> Frame<'_, T> {
             Touch::Previous => at.end == edge && Some(next) == self.apex(),
             _ => at.end == next && Some(edge) == self.apex(),
         };
-        match view.edges.iter().find(is_this) {
+        match view.edges().find(is_this) {
             Some(at_apex) => self.added_at_apex(view, at_apex, line),
             None => self.added_elsewhere(view, [edge, next], line),
         }
