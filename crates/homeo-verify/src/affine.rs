@@ -1,23 +1,24 @@
 //! Affine forms: real functions on a box, enclosed by an affine function and a radius, in floating point rounded outwards.
 //!
-//! A form stands for all functions of `x`, `y` in `[-1, 1]` within `radius` of `middle + slopes . (x, y)`. A ball (`ball`)
+//! A form stands for all functions of `N` coordinates in `[-1, 1]`, in the plane two, within `radius` of
+//! `middle + slopes . coordinates`. A ball (`ball`)
 //! forgets how a quantity moves with the others; forms remember it to first order, so what cancels in a formula cancels in its
 //! enclosure, and enclosures of smooth functions are off by the square of the box only (de Figueiredo, Stolfi 2004). What
 //! is of second order goes to the radius.
 //!
 //! *Rounding.* As in `ball`: one operation is off by `EPSILON / 2` of its result, or by `2^-1074`. Each middle and each
 //! slope is a sum of products of at most six operations, so it is off by less than `4 EPSILON` times the sum of the sizes
-//! of its terms; [`Form::rounded`] takes such a sum. A radius is a sum of products of numbers that are not negative, of fewer
+//! of its terms; [`Self::rounded`] takes such a sum. A radius is a sum of products of numbers that are not negative, of fewer
 //! than thirty operations. What is infinite or no number stays so, and passes no comparison.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// All functions within `radius` of `middle + slopes . (x, y)`, where `x` and `y` go from -1 to 1.
+/// All functions within `radius` of `middle + slopes . coordinates`, where these go from -1 to 1.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Form {
+pub(crate) struct Form<const N: usize = 2> {
     pub(crate) middle: f64,
-    slopes: [f64; 2],
-    radius: f64,
+    pub(crate) slopes: [f64; N],
+    pub(crate) radius: f64,
 }
 
 /// More than thirty underflows.
@@ -27,36 +28,64 @@ const UPWARDS: f64 = 1.0 + 32.0 * f64::EPSILON;
 /// Of the sum of the sizes of its terms: more than a middle or a slope is off.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
-impl Form {
-    pub(crate) const ZERO: Form = Form::exact(0.0);
-    pub(crate) const ONE: Form = Form::exact(1.0);
-    const UNKNOWN: Form = Form { middle: 0.0, slopes: [0.0; 2], radius: f64::INFINITY };
+impl<const N: usize> Form<N> {
+    pub(crate) const ZERO: Self = Self::exact(0.0);
+    pub(crate) const ONE: Self = Self::exact(1.0);
+    pub(crate) const UNKNOWN: Self = Self { middle: 0.0, slopes: [0.0; N], radius: f64::INFINITY };
 
     /// A double, exactly.
-    pub(crate) const fn exact(value: f64) -> Form {
-        Form { middle: value, slopes: [0.0; 2], radius: 0.0 }
+    pub(crate) const fn exact(value: f64) -> Self {
+        Self { middle: value, slopes: [0.0; N], radius: 0.0 }
     }
 
     /// The coordinate of the box with the number `axis`, from `low` to `high`.
-    pub(crate) fn between([low, high]: [f64; 2], axis: usize) -> Form {
-        let mut slopes = [0.0; 2];
+    pub(crate) fn between([low, high]: [f64; 2], axis: usize) -> Self {
+        let mut slopes = [0.0; N];
         slopes[axis] = 0.5 * (high - low);
-        Form::rounded(0.5 * low + 0.5 * high, slopes, 0.0, low.abs() + high.abs())
+        Self::rounded(0.5 * low + 0.5 * high, slopes, 0.0, low.abs() + high.abs())
     }
 
     /// What an operation gives; `terms` is the sum of the sizes of all terms of the middle and the slopes.
-    fn rounded(middle: f64, slopes: [f64; 2], radius: f64, terms: f64) -> Form {
-        Form { middle, slopes, radius: (radius + terms * ROUNDED) * UPWARDS + UNDERFLOW }
+    pub(crate) fn rounded(middle: f64, slopes: [f64; N], radius: f64, terms: f64) -> Self {
+        Self { middle, slopes, radius: (radius + terms * ROUNDED) * UPWARDS + UNDERFLOW }
     }
 
     /// At least how far values are from the middle.
     pub(crate) fn deviation(self) -> f64 {
-        (self.slopes[0].abs() + self.slopes[1].abs() + self.radius) * UPWARDS
+        (size(self.slopes) + self.radius) * UPWARDS
+    }
+
+    /// No more than any value.
+    pub(crate) fn least(self) -> f64 {
+        let deviation = self.deviation();
+        self.middle - deviation - f64::EPSILON * (self.middle.abs() + deviation)
+    }
+
+    /// No less than any value.
+    pub(crate) fn most(self) -> f64 {
+        -(-self).least()
+    }
+
+    /// No less than the size of any value.
+    pub(crate) fn size(self) -> f64 {
+        self.most().max(-self.least())
+    }
+
+    /// All functions that are no farther away than `by`, besides.
+    pub(crate) fn widened(self, by: f64) -> Self {
+        Self { radius: (self.radius + by) * UPWARDS, ..self }
+    }
+
+    /// `slope` times this and a constant, and all functions no farther from that than `radius`.
+    pub(crate) fn on_line(self, slope: f64, constant: f64, radius: f64) -> Self {
+        let terms = constant.abs() + slope.abs() * self.terms();
+        let slopes = self.slopes.map(|a| slope * a);
+        Self::rounded(constant + slope * self.middle, slopes, slope.abs() * self.radius + radius, terms)
     }
 
     /// The sum of the sizes of middle and slopes.
-    fn terms(self) -> f64 {
-        self.middle.abs() + self.slopes[0].abs() + self.slopes[1].abs()
+    pub(crate) fn terms(self) -> f64 {
+        self.middle.abs() + size(self.slopes)
     }
 
     pub(crate) fn is_positive(self) -> bool {
@@ -70,68 +99,76 @@ impl Form {
     /// The inverse, by the line of its secant: `1 / u + u / (l h)` is convex, and greatest at both ends of `[l, h]`, where it
     /// is `1 / l + 1 / h`, and least at the root of `l h`. With any other slope `-p` near this one, and a constant `c`, the
     /// error `1 / u + p u - c` lies between `2 sqrt p - c` and the greater one of its values at the ends.
-    pub(crate) fn inverse(self) -> Form {
+    pub(crate) fn inverse(self) -> Self {
         if self.middle < 0.0 {
             return -(-self).inverse();
         }
-        let deviation = self.deviation();
-        let low = (self.middle - deviation) * (1.0 - f64::EPSILON);
-        let high = (self.middle + deviation) * (1.0 + f64::EPSILON);
+        let [low, high] = [self.least(), self.most()];
         if !(low > 0.0 && high.is_finite()) {
-            return Form::UNKNOWN;
+            return Self::UNKNOWN;
         }
         let slope = 1.0 / (low * high);
         let (most, least) = ((1.0 / low + slope * low).max(1.0 / high + slope * high), 2.0 * slope.sqrt());
         let constant = 0.5 * (most + least);
-        let error = 0.5 * (most - least).max(0.0) + ROUNDED * (most + constant);
-        let terms = constant + slope * self.terms();
-        let slopes = self.slopes.map(|a| -slope * a);
-        Form::rounded(constant - slope * self.middle, slopes, slope * self.radius + error, terms)
+        self.on_line(-slope, constant, 0.5 * (most - least).max(0.0) + ROUNDED * (most + constant))
     }
 }
 
-impl Add for Form {
-    type Output = Form;
-    fn add(self, other: Form) -> Form {
-        let slopes = [0, 1].map(|k| self.slopes[k] + other.slopes[k]);
+impl<const N: usize> Add for Form<N> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        let slopes = std::array::from_fn(|k| self.slopes[k] + other.slopes[k]);
         let middle = self.middle + other.middle;
-        let terms = middle.abs() + slopes[0].abs() + slopes[1].abs();
-        Form::rounded(middle, slopes, self.radius + other.radius, terms)
+        let terms = middle.abs() + size(slopes);
+        Self::rounded(middle, slopes, self.radius + other.radius, terms)
     }
 }
 
-impl Neg for Form {
-    type Output = Form;
-    fn neg(self) -> Form {
-        Form { middle: -self.middle, slopes: self.slopes.map(f64::neg), radius: self.radius }
+impl<const N: usize> Neg for Form<N> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { middle: -self.middle, slopes: self.slopes.map(f64::neg), radius: self.radius }
     }
 }
 
-impl Sub for Form {
-    type Output = Form;
-    fn sub(self, other: Form) -> Form {
+impl<const N: usize> Sub for Form<N> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl Mul for Form {
-    type Output = Form;
+impl<const N: usize> Mul for Form<N> {
+    type Output = Self;
     /// Squares of coordinates lie between 0 and 1: half of what they are multiplied by goes to the middle.
-    fn mul(self, other: Form) -> Form {
-        let ([a, b], [c, d]) = (self.slopes, other.slopes);
-        let (squares, mixed) = ([a * c, b * d], (a * d).abs() + (b * c).abs());
-        let slopes = [0, 1].map(|k| self.middle * other.slopes[k] + other.middle * self.slopes[k]);
-        let halves = 0.5 * (squares[0].abs() + squares[1].abs());
-        let (own, others) = (a.abs() + b.abs(), c.abs() + d.abs());
-        let (size, other_size) = (self.middle.abs(), other.middle.abs());
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self.slopes, other.slopes);
+        let slopes = std::array::from_fn(|k| self.middle * b[k] + other.middle * a[k]);
+        let (mut squares, mut halves, mut mixed, mut rounded) = (0.0, 0.0, 0.0, 0.0);
+        for k in 0..N {
+            squares += a[k] * b[k];
+            halves += 0.5 * (a[k] * b[k]).abs();
+            for l in 0..k {
+                let products = [a[k] * b[l], a[l] * b[k]];
+                mixed += (products[0] + products[1]).abs();
+                rounded += products[0].abs() + products[1].abs();
+            }
+        }
+        let (own, others) = (size(a), size(b));
+        let (middle, other_middle) = (self.middle.abs(), other.middle.abs());
         let radius = halves
-            + (a * d + b * c).abs()
-            + ROUNDED * mixed
-            + (size + own) * other.radius
-            + (other_size + others + other.radius) * self.radius;
-        let terms = size * (other_size + others) + other_size * own + halves;
-        Form::rounded(self.middle * other.middle + 0.5 * (squares[0] + squares[1]), slopes, radius, terms)
+            + mixed
+            + ROUNDED * rounded
+            + (middle + own) * other.radius
+            + (other_middle + others + other.radius) * self.radius;
+        let terms = middle * (other_middle + others) + other_middle * own + halves;
+        Self::rounded(self.middle * other.middle + 0.5 * squares, slopes, radius, terms)
     }
+}
+
+/// The sum of the sizes of numbers.
+fn size<const N: usize>(numbers: [f64; N]) -> f64 {
+    numbers.iter().map(|x| x.abs()).sum()
 }
 
 /// A vector of the plane.

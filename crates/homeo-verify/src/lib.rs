@@ -25,6 +25,7 @@ mod affine;
 mod archive;
 mod ball;
 mod bundle;
+mod cage;
 mod circuit;
 mod complex;
 mod complex_barycentric;
