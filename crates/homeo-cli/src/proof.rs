@@ -107,15 +107,36 @@ pub fn write_and_decide(
 ) -> Result<Claim> {
     let bytes = written(session, Some(path), outputs, write)?;
     session.stage("certificate");
-    let claim = match verify_bytes(&bytes) {
-        Ok(Verdict::Refuted(witness)) => {
-            let what = "the map has no certificate; nothing was written";
-            return Err(refuted(Exit::Limits, what, &witness));
-        }
-        _ => check_own(&bytes)?,
-    };
+    let claim = decide(&bytes)?;
     session.check()?;
     Ok(claim)
+}
+
+/// Checks a map that this program has made and that need not be one.
+///
+/// # Errors
+/// When it has no certificate.
+pub fn decide(bytes: &[u8]) -> Result<Claim> {
+    match verify_bytes(bytes) {
+        Ok(Verdict::Refuted(witness)) => {
+            let what = "the map has no certificate; nothing was written";
+            Err(refuted(Exit::Limits, what, &witness))
+        }
+        _ => check_own(bytes),
+    }
+}
+
+/// Writes the bytes of a map that were checked, and reads them back.
+///
+/// # Errors
+/// When they cannot be written.
+pub fn keep(session: &Session, path: &Path, outputs: &mut Outputs, bytes: &[u8]) -> Result<()> {
+    match written(session, Some(path), outputs, |out| out.write_all(bytes))? == bytes {
+        true => Ok(()),
+        false => {
+            Err(Failure::limits("cannot-write", format!("{} reads back other than it was written", path.display())))
+        }
+    }
 }
 
 /// The bytes of a map's file, as they are there or would be.
@@ -187,7 +208,7 @@ pub fn open_certified(session: &Session, path: &Path) -> Result<(StoredMap, Clai
     let claim = certified(session, path, &bytes)?;
     session.stage("prepare");
     let map = read_map(&bytes).map_err(|error| match error {
-        MapFileError::NoMap => Failure::input("no-map", format!("{}: {error}", path.display())),
+        MapFileError::NoMap | MapFileError::OfCages => Failure::input("no-map", format!("{}: {error}", path.display())),
         _ => Failure::input("unreadable-map", format!("{}: {error}", path.display())),
     })?;
     session.fact("input", map_json(&map, path));

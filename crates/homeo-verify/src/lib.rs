@@ -40,6 +40,7 @@ mod mean_value;
 mod moved;
 mod npy;
 mod number;
+mod parallel;
 mod piecewise_linear;
 mod rings;
 mod section;
@@ -204,6 +205,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Kind::UnitTangentBundle if has_section => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T10"),
         Kind::UnitTangentBundle => ("unit-tangent-bundle", "theorem on circle bundles, rules T1-T8"),
         Kind::MovedMesh => ("moved-mesh", "theorem on moved meshes, rules M1-M5"),
+        Kind::CompositeCage => ("composite-cage", "theorem on maps between cages, rules Q1-Q3"),
     };
     let (target, onto) = match map.manifest.target {
         Target::Square => ("square", "square [0,1]^2"),
@@ -222,6 +224,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         Target::UnitTangentBundle => ("unit-tangent-bundle", "surface"),
         Target::UnitTangentBundleWithSection => ("unit-tangent-bundle-with-section", "surface"),
         Target::Space => ("space", "moved mesh"),
+        Target::Polyhedron => ("polyhedron", "target cage"),
     };
     let (vertices, cells) = (map.positions.len(), map.cells.len() / map.manifest.cell_size());
     let mut statement = format!(
@@ -290,8 +293,17 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         statement = moved::statement(map, theorem);
         overlaps = "Nothing is said of how much it distorts.";
     }
+    if let MapData::Cages(later) = &map.data {
+        statement = format!(
+            "The stored map is a homeomorphism in {} steps from the inside of the cage of {vertices} vertices and {cells} triangles \
+             onto that of the {onto}; it is linear on every triangle ({theorem}).",
+            later.len()
+        );
+        overlaps = "Nothing is said of how much it distorts.";
+    }
     let limits = [
         match &map.data {
+            MapData::Cages(_) => "The claim is about the exact mean value maps of the cages in the file.",
             MapData::Moved(_) => {
                 "The claim is about the two meshes in the file, and not about what moved the one to the other."
             }
@@ -344,6 +356,9 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
     if let MapData::Moved(after) = &map.data {
         return moved::check_moved(map, after);
     }
+    if let MapData::Cages(later) = &map.data {
+        return cage::check_cages(map, later);
+    }
     let source = source::check_source(map)?;
     let refined = match &map.refinement {
         Some(refinement) => Some(subdivision::check_subdivision(map, refinement, &source)?),
@@ -365,7 +380,8 @@ fn check_rules(map: &MapFile) -> Checked<Vec<(&'static str, u64)>> {
             checked.push(("image cells with the right sign (rule P)", complex.count() as u64));
         }
         MapData::Shell(_) | MapData::Harmonic(_) | MapData::Composite(_) => {} // above
-        MapData::Complex(_) | MapData::Hyperbolic(_) | MapData::Bundle(_) | MapData::Moved(_) => {} // above
+        MapData::Complex(_) | MapData::Hyperbolic(_) | MapData::Bundle(_) => {} // above
+        MapData::Moved(_) | MapData::Cages(_) => {}                            // above
     }
     Ok(checked)
 }

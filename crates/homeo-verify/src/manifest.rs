@@ -44,6 +44,8 @@ pub(crate) enum Target {
     UnitTangentBundleWithSection,
     /// Where a mesh has moved to.
     Space,
+    /// The inside of a closed triangle mesh.
+    Polyhedron,
 }
 
 impl Target {
@@ -88,6 +90,7 @@ pub(crate) enum Kind {
     Hyperbolic,
     UnitTangentBundle,
     MovedMesh,
+    CompositeCage,
 }
 
 /// What the manifest claims.
@@ -167,6 +170,9 @@ impl Manifest {
         readable(is_bundle == has_bundle, "kind unit-tangent-bundle and the targets of bundles belong together")?;
         let is_moved = manifest.kind == Kind::MovedMesh;
         readable(is_moved == (manifest.target == Target::Space), "kind moved-mesh and target space belong together")?;
+        let is_between_cages = manifest.kind == Kind::CompositeCage;
+        let is_polyhedron = manifest.target == Target::Polyhedron;
+        readable(is_between_cages == is_polyhedron, "kind composite-cage and target polyhedron belong together")?;
         Ok(manifest)
     }
 

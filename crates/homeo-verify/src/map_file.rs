@@ -39,6 +39,8 @@ pub(crate) enum MapData {
     Bundle(BundleData),
     /// Where the vertices have moved to.
     Moved(Vec<Point>),
+    /// The vertices of the cages after the source.
+    Cages(Vec<Vec<Point>>),
 }
 
 /// The arrays of a foliation; the section is empty for the ball.
@@ -158,7 +160,7 @@ impl MapFile {
         }
         let (positions, cells) = read_source(&mut archive, &manifest)?;
         let size = manifest.cell_size();
-        let may_be_refined = !matches!(manifest.kind, Kind::Shell | Kind::MovedMesh);
+        let may_be_refined = !matches!(manifest.kind, Kind::Shell | Kind::MovedMesh | Kind::CompositeCage);
         let refinement = match may_be_refined && archive.0.contains_key("cells.npy") {
             true => Some(Refinement::read(&mut archive, size)?),
             false => None,
@@ -167,6 +169,8 @@ impl MapFile {
             MapData::Shell(ShellData::read(&mut archive, manifest.target)?)
         } else if manifest.kind == Kind::MovedMesh {
             MapData::Moved(Array::take(&mut archive, "target_positions")?.read_points(Some(positions.len()), 3)?)
+        } else if manifest.kind == Kind::CompositeCage {
+            MapData::Cages(read_stages(&mut archive, positions.len())?)
         } else if manifest.kind == Kind::PiecewiseLinear {
             let count = positions.len() + refinement.as_ref().map_or(0, |r| r.carriers.len());
             MapData::PiecewiseLinear(Array::take(&mut archive, "target_positions")?.read_points(Some(count), size - 1)?)
@@ -236,6 +240,14 @@ fn read_source(archive: &mut Archive, manifest: &Manifest) -> Result<(Vec<Point>
     readable(is_counted, "the source has another number of vertices or cells than the manifest says")?;
     readable(hash == source.content_sha256, "the source arrays do not have the stated content_sha256 (lower-case)")?;
     Ok(source_arrays)
+}
+
+/// The vertices of the cages after the source, one or more.
+fn read_stages(archive: &mut Archive, count: usize) -> Result<Vec<Vec<Point>>, Unreadable> {
+    let all = Array::take(archive, "stage_positions")?.read_points(None, 3)?;
+    let is_whole = count > 0 && !all.is_empty() && all.len() % count == 0;
+    readable(is_whole, "stage_positions does not have one or more cages of as many vertices as the source")?;
+    Ok(all.chunks_exact(count).map(<[Point]>::to_vec).collect())
 }
 
 impl Refinement {

@@ -32,11 +32,11 @@ pub(crate) fn statement(map: &MapFile, theorem: &str) -> String {
 }
 
 /// Where the vertices are, and what is said of it.
-struct Placement<'a> {
-    points: &'a [Point],
-    when: &'static str,
+pub(crate) struct Placement<'a> {
+    pub(crate) points: &'a [Point],
+    pub(crate) when: &'a str,
     /// The rule on cells, and that on triangles.
-    rules: [&'static str; 2],
+    pub(crate) rules: [&'static str; 2],
 }
 
 /// Applies the rules to a mesh with vertices before and after, as many.
@@ -84,7 +84,7 @@ fn check_kept(complex: &Complex, signs: &[Ordering], after: &Placement) -> Check
 }
 
 /// The signs of tetrahedra, none of them zero; triangles, which have area, count as positive.
-fn check_signs(complex: &Complex, placement: &Placement) -> Checked<Vec<Ordering>> {
+pub(crate) fn check_signs(complex: &Complex, placement: &Placement) -> Checked<Vec<Ordering>> {
     let mut signs = Vec::with_capacity(complex.count());
     for (c, cell) in complex.cells().enumerate() {
         let at = |i: usize| placement.points[cell[i] as usize];
@@ -102,7 +102,7 @@ fn check_signs(complex: &Complex, placement: &Placement) -> Checked<Vec<Ordering
 }
 
 /// The triangles of a surface, or of the boundary of a volume, seen from inside of it.
-struct Skin {
+pub(crate) struct Skin {
     faces: Vec<[u32; 3]>,
     /// The cell of each.
     cells: Vec<usize>,
@@ -131,6 +131,13 @@ impl Skin {
         })
     }
 
+    /// Of a closed surface in one piece, which encloses what it is the boundary of.
+    pub(crate) fn of_cage(complex: &Complex) -> Self {
+        let faces: Vec<_> = complex.cells().map(|cell| [cell[0], cell[1], cell[2]]).collect();
+        let cells = (0..faces.len()).collect();
+        Skin { pieces: Some(vec![0; faces.len()]), faces, cells }
+    }
+
     fn count(&self) -> u64 {
         self.faces.len() as u64
     }
@@ -140,7 +147,7 @@ impl Skin {
     }
 
     /// No triangles meet but in common vertices and edges; of a boundary, one piece encloses a positive volume.
-    fn check(&self, placement: &Placement) -> Checked {
+    pub(crate) fn check(&self, placement: &Placement) -> Checked {
         let at = |v: u32| placement.points[v as usize];
         let boxes: Vec<_> = self.faces.iter().map(|face| bounds(&face.map(at))).collect();
         let tree = BoxTree::new(&boxes);
@@ -173,7 +180,7 @@ impl Skin {
 
 impl Placement<'_> {
     /// A witness is drawn here.
-    fn drawn(&self, checked: Checked) -> Checked {
+    pub(crate) fn drawn(&self, checked: Checked) -> Checked {
         checked.map_err(|stop| match stop {
             Stop::Refuted(mut witness) => {
                 let places: Vec<Point> = witness.vertices.iter().map(|&v| self.points[v as usize]).collect();

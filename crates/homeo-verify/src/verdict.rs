@@ -28,11 +28,11 @@ pub struct Claim {
     /// The claim in words, with the theorem that was applied.
     pub statement: String,
     /// `foliation`, `piecewise-linear`, `shell`, `composite-harmonic`, `composite-mean-value`, `complex-barycentric`,
-    /// `hyperbolic`, `unit-tangent-bundle` or `moved-mesh`.
+    /// `hyperbolic`, `unit-tangent-bundle`, `moved-mesh` or `composite-cage`.
     pub kind: String,
     /// `square`, `disk`, `cube`, `ball`, `shell`, `section`, `immersed-shell`, `embedded-shell`, `polygon`,
     /// `annulus`, `domain`, `geodesic-boundary`, `canonical-decomposition`, `unit-tangent-bundle`,
-    /// `unit-tangent-bundle-with-section` or `space`.
+    /// `unit-tangent-bundle-with-section`, `space` or `polyhedron`.
     pub target: String,
     /// What was checked, and how many times.
     #[serde(serialize_with = "as_object")]
@@ -116,6 +116,11 @@ pub(crate) type Checked<T = ()> = Result<T, Stop>;
 pub(crate) fn refuted(rule: &'static str, message: impl Into<String>, cells: &[usize], vertices: &[u32]) -> Stop {
     let cells = cells.iter().map(|&c| u32::try_from(c).unwrap_or(u32::MAX)).collect();
     Stop::Refuted(Witness { rule, message: message.into(), cells, vertices: vertices.to_vec(), points: vec![] })
+}
+
+/// A rule fails at a point that is no vertex.
+pub(crate) fn refuted_at(rule: &'static str, message: String, at: [f64; 3]) -> Stop {
+    Stop::Refuted(Witness { rule, message, cells: vec![], vertices: vec![], points: vec![at] })
 }
 
 /// Goes on if a rule holds.

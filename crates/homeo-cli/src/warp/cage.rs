@@ -1,11 +1,12 @@
 //! Meshes and points in space that move with a cage, and tetrahedral meshes that follow their boundary.
 
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use homeo::cage::{
-    CageError, CagePair, DeformError, Deformed, Moved, Steps, Verdict, deform, harmonic_extension, judge,
+    CageError, CageMap, CagePair, DeformError, Deformed, Moved, Steps, Verdict, deform, harmonic_extension, judge,
 };
-use homeo::certificate::{Provenance, write_moved};
+use homeo::certificate::{Provenance, write_cages, write_moved};
 use homeo::progress::Progress;
 use homeo::shape::{PolyhedronPath, StraightPolyhedra, TurningPolyhedra};
 use homeo_core::io::Format;
@@ -13,7 +14,7 @@ use homeo_core::mesh::TetrahedronComplex;
 use homeo_verify::Claim;
 use serde_json::json;
 
-use super::moved::{Input, ONLY_MESHES, refused, write};
+use super::moved::{Input, refused, write};
 use crate::answer::Answer;
 use crate::args::{MethodName, PathName, WarpArgs};
 use crate::failure::{Failure, Result};
@@ -63,12 +64,46 @@ pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Resu
         first: options.steps.unwrap_or(1),
         most: options.most_steps.unwrap_or(Steps::default().most).max(options.steps.unwrap_or(1)),
     };
+    if let (Some(map), Moved::Points) = (&options.map, input.moved()) {
+        return run_points(session, options, (&cages, path.as_ref()), input, (steps, map), outputs);
+    }
     let done = deform(&cages, path.as_ref(), input.moved(), input.positions(), steps, session)
         .map_err(|error| explain(session, &error))?;
     if let Some(failure) = refused(&done.verdict, Some(done.steps), &input) {
         return Err(failure);
     }
-    finish(session, options, input, done, outputs)
+    let claim = certify(session, options, &input, &done, outputs)?;
+    finish(session, options, input, done, claim, outputs)
+}
+
+/// Points move by the map between the insides of the cages, which is kept: in as many steps as its certificate takes.
+fn run_points(
+    session: &Session,
+    options: &WarpArgs,
+    (cages, path): (&CagePair, &dyn PolyhedronPath),
+    input: Input,
+    (steps, kept): (Steps, &Path),
+    outputs: &mut Outputs,
+) -> Result<Answer> {
+    let mut count = steps.first;
+    let (map, bytes, claim) = loop {
+        let map = CageMap::along(cages, path, count).map_err(|error| explain(session, &error))?;
+        let mut file = Cursor::new(Vec::new());
+        write_cages(&map, &provenance(options, count), &mut file).map_err(|e| Failure::bug(e.to_string()))?;
+        session.stage("certificate");
+        let decided = proof::decide(file.get_ref());
+        session.check()?;
+        match decided {
+            Ok(claim) => break (map, file.into_inner(), claim),
+            Err(_) if 2 * count <= steps.most => count *= 2,
+            Err(failure) => return Err(failure.with("steps", count)),
+        }
+    };
+    session.stage("warp");
+    let positions = map.forward(input.positions(), session).map_err(|error| explain(session, &error))?;
+    proof::keep(session, kept, outputs, &bytes)?;
+    let done = Deformed { positions, steps: count, verdict: Verdict::NothingToJudge, crossing_cage: None };
+    finish(session, options, input, done, Some(claim), outputs)
 }
 
 /// A tetrahedral mesh follows its boundary.
@@ -94,7 +129,9 @@ fn run_harmonic(session: &Session, options: &WarpArgs, outputs: &mut Outputs) ->
     if let Some(failure) = refused(&verdict, None, &input) {
         return Err(failure);
     }
-    finish(session, options, input, Deformed { positions, steps: 1, verdict, crossing_cage: None }, outputs)
+    let done = Deformed { positions, steps: 1, verdict, crossing_cage: None };
+    let claim = certify(session, options, &input, &done, outputs)?;
+    finish(session, options, input, done, claim, outputs)
 }
 
 /// Where the boundary goes: the surface has the vertices of the mesh, or those on its boundary, in the same order.
@@ -149,9 +186,6 @@ fn check_options(options: &WarpArgs) -> Result<()> {
         return Err(Failure::usage("pictures move with polygons; cages move meshes and points in space"));
     }
     let are_points = PointFormat::of_path(&options.input).is_ok();
-    if are_points && options.map.is_some() {
-        return Err(Failure::usage(ONLY_MESHES));
-    }
     match &options.output {
         Some(output) if are_points => PointFormat::of_path(output).map(|_| ()),
         Some(output) if Format::of_path(output).is_none() => {
@@ -216,24 +250,28 @@ fn explain(session: &Session, error: &DeformError) -> Failure {
     }
 }
 
-/// Writes the map and has it checked, before anything else is written.
+/// Writes the map of a mesh, if it is to be kept, and has it checked before anything else is written.
 fn certify(
     session: &Session,
     options: &WarpArgs,
     input: &Input,
     done: &Deformed,
-    path: &Path,
     outputs: &mut Outputs,
-) -> Result<Claim> {
+) -> Result<Option<Claim>> {
+    let Some(path) = &options.map else { return Ok(None) };
     let map = input.map(&done.positions)?;
+    let provenance = provenance(options, done.steps);
+    proof::write_and_decide(session, path, outputs, |mut out| write_moved(&map, &provenance, &mut out)).map(Some)
+}
+
+fn provenance(options: &WarpArgs, steps: usize) -> Provenance {
     let cages = [&options.polygons.from, &options.polygons.to].map(|path| path.as_deref().map(file_name));
     let method = if options.method == Some(MethodName::Harmonic) { "harmonic" } else { "mean-value" };
-    let provenance = Provenance {
+    Provenance {
         source_name: file_name(&options.input),
         program: format!("homeo {}", env!("CARGO_PKG_VERSION")),
-        options: json!({"method": method, "from": cages[0], "to": cages[1], "steps": done.steps}),
-    };
-    proof::write_and_decide(session, path, outputs, |mut out| write_moved(&map, &provenance, &mut out))
+        options: json!({"method": method, "from": cages[0], "to": cages[1], "steps": steps}),
+    }
 }
 
 fn finish(
@@ -241,15 +279,12 @@ fn finish(
     options: &WarpArgs,
     input: Input,
     done: Deformed,
+    claim: Option<Claim>,
     outputs: &mut Outputs,
 ) -> Result<Answer> {
     session.check()?;
     let moved = input.described();
     let checked = input.checked();
-    let claim = match &options.map {
-        Some(path) => Some(certify(session, options, &input, &done, path, outputs)?),
-        None => None,
-    };
     if let Some(output) = &options.output {
         write(session, input, done.positions, output, outputs)?;
     }

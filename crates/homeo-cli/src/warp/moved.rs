@@ -20,9 +20,6 @@ use crate::session::Session;
 /// How many elements are listed.
 const SHOWN: usize = 10;
 
-/// Why points have no map file.
-pub const ONLY_MESHES: &str = "--map is for meshes: points make no mesh that the map could be one of";
-
 /// What moves.
 pub enum Input {
     Mesh(Box<MeshInput>),
@@ -69,7 +66,7 @@ impl Input {
     pub fn map(&self, after: &[[f64; 3]]) -> Result<MovedMap> {
         let (before, after) = (self.positions().to_vec(), after.to_vec());
         let map = match self.moved() {
-            Moved::Points => return Err(Failure::usage(ONLY_MESHES)),
+            Moved::Points => return Err(Failure::usage("points make no mesh")),
             Moved::Surface(complex) => {
                 MovedMesh::new(SourceMesh::new(before, complex.clone()), after).map(MovedMap::from)
             }

@@ -6,7 +6,7 @@
 //! their charts. How large cubes and cones are is a matter of speed only.
 
 use super::chart::{Cell, Chart, main_axis};
-use super::determinant::{Fit, Frame};
+use super::determinant::{Enclosure, Fit, Frame};
 use super::inside::is_inside;
 use super::jet::{cross, dot, minus};
 use super::outline::{Outline, Point};
@@ -160,6 +160,18 @@ impl<'a> Cover<'a> {
         })
     }
 
+    /// A point in the middle of one of the cells that are begun with, inside, at which the determinant is negative.
+    pub fn sampled_fold(&self) -> Option<Point> {
+        let frame = Frame::new(self.outline, Chart::Open);
+        let open = self.cells().into_iter().filter(|(chart, _)| matches!(chart, Chart::Open));
+        let points = open.map(|(_, cell)| cell.map(|[low, high]| [0.5 * low + 0.5 * high; 2]));
+        let folds = |point: &Cell| {
+            let is_negative = |found: Enclosure| found.determinant.is_negative();
+            self.side(&frame, point) == Some(true) && frame.enclose(point, &Fit::IDENTITY).is_some_and(is_negative)
+        };
+        points.into_iter().find(folds).map(|point| point.map(|[x, _]| x))
+    }
+
     /// The side on which a cell that no face meets lies; none if that is not clear.
     fn is_inside(&self, chart: Chart, cell: &Cell) -> Option<bool> {
         let middle = self.middle(chart, cell);
@@ -190,15 +202,17 @@ impl<'a> Cover<'a> {
             if self.is_covered(chart, &cell) {
                 continue;
             }
-            let is_inside = is_inside || match self.side(&frame, &cell) {
-                Some(false) => continue,
-                known => known == Some(true),
-            };
+            let is_inside = is_inside
+                || match self.side(&frame, &cell) {
+                    Some(false) => continue,
+                    known => known == Some(true),
+                };
             if count == most {
                 return Outcome::Undecided(self.middle(chart, &cell));
             }
             count += 1;
-            let mut shares = [0, 1, 2].map(|k| (cell[k][1] - cell[k][0]) / if matches!(chart, Chart::Open) { 1.0 } else { widths[k] });
+            let mut shares = [0, 1, 2]
+                .map(|k| (cell[k][1] - cell[k][0]) / if matches!(chart, Chart::Open) { 1.0 } else { widths[k] });
             if let Some(found) = frame.enclose(&cell, &fit) {
                 if found.determinant.is_positive() {
                     continue;
@@ -207,7 +221,9 @@ impl<'a> Cover<'a> {
                     return Outcome::Negative(self.middle(chart, &cell));
                 }
                 fit = found.fit;
-                if found.restless.iter().all(|x| x.is_finite()) && !matches!(chart, Chart::Edge { .. }) { shares = found.restless; }
+                if found.restless.iter().all(|x| x.is_finite()) && !matches!(chart, Chart::Edge { .. }) {
+                    shares = found.restless;
+                }
             }
             for half in halves(&cell, shares) {
                 waiting.push_back(Waiting { cell: half, fit, is_inside });

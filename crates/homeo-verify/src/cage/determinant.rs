@@ -227,15 +227,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Formulas (1), (3) and (4): the weights of a face are added; its share of the total is returned.
-    fn add(
-        &self,
-        place: &Place,
-        sights: &[Sight],
-        face: usize,
-        view: View,
-        way: Way,
-        weights: &mut [Jet],
-    ) -> Jet {
+    fn add(&self, place: &Place, sights: &[Sight], face: usize, view: View, way: Way, weights: &mut [Jet]) -> Jet {
         let (it, level) = (&self.outline.faces[face], self.levels[face]);
         let angles = [0, 1, 2].map(|k| sights[it.edges[k] as usize].angle);
         let over_height = match way {
@@ -277,15 +269,7 @@ impl<'a> Frame<'a> {
     }
 
     /// The quotient of the difference of `sight.angle` from its value at the foot of the height, and the square of the height.
-    fn slope(
-        &self,
-        place: &Place,
-        sight: &Sight,
-        edge: usize,
-        inside: Jet,
-        height: Jet,
-        normal: Vector<Form>,
-    ) -> Jet {
+    fn slope(&self, place: &Place, sight: &Sight, edge: usize, inside: Jet, height: Jet, normal: Vector<Form>) -> Jet {
         let scale = if self.edge_levels[edge] == 2 { place.s } else { Jet::ONE };
         let part = scale * scale.square() * self.part_slope(place, sight, edge, scale * inside, scale * height, normal);
         if !sight.is_wide {
@@ -333,13 +317,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Formula (6): the determinant, and the affine map at the middle of the cell.
-    fn conclude(
-        &self,
-        place: &Place,
-        matrix: &[Vector<Form>; 3],
-        shift: [f64; 3],
-        rest: Vector<Jet>,
-    ) -> (Form, Fit) {
+    fn conclude(&self, place: &Place, matrix: &[Vector<Form>; 3], shift: [f64; 3], rest: Vector<Jet>) -> (Form, Fit) {
         let image = |v: Vector<Form>| [0, 1, 2].map(|k| dot(matrix[k], v));
         let [r, s] = [place.r.value, place.s.value];
         let values = rest.map(|x| x.value);
@@ -370,9 +348,8 @@ fn fit(
     let own = place.columns.map(|c| c.map(|x| x.middle));
     let rows = [cross(own[1], own[2]), cross(own[2], own[0]), cross(own[0], own[1])];
     let size = dot(own[0], rows[0]);
-    let derivative: [[f64; 3]; 3] = [0, 1, 2].map(|row| {
-        [0, 1, 2].map(|column| (0..3).map(|k| columns[k][row] * rows[k][column]).sum::<f64>() / size)
-    });
+    let derivative: [[f64; 3]; 3] = [0, 1, 2]
+        .map(|row| [0, 1, 2].map(|column| (0..3).map(|k| columns[k][row] * rows[k][column]).sum::<f64>() / size));
     let at = place.position.map(|x| x.value.middle);
     let moved = [0, 1, 2].map(|k| {
         let before = dot(matrix[k].map(|x| x.middle), at);

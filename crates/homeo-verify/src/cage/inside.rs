@@ -30,11 +30,8 @@ mod tests {
     fn points_are_inside_or_not() {
         let corner = |k: u32| [k & 1, k >> 1 & 1, k >> 2].map(f64::from);
         let squares = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let triangles: Vec<[Point; 3]> = squares
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .map(|t: [u32; 3]| t.map(corner))
-            .collect();
+        let triangles: Vec<[Point; 3]> =
+            squares.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|t: [u32; 3]| t.map(corner)).collect();
         let mut count = [0; 2];
         let steps = [-0.5, 0.0, 0.25, 0.5, 0.75, 1.0, 1.5];
         for at in steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| [x, y, z]))) {

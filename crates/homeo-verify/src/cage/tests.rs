@@ -162,8 +162,17 @@ fn explore() {
             });
             let begin = std::time::Instant::now();
             let Some(Enclosure { fit, .. }) = frame.enclose(&middle.map(|x| [x, x]), &Fit::IDENTITY) else { continue };
-            let Some(Enclosure { determinant: found, .. }) = frame.enclose(&small, &fit) else { print!("none "); continue };
-            print!("{:.3}+-{:.1e} (slopes {:.1e}; {:?}) ", found.middle, found.radius, found.deviation() - found.radius, begin.elapsed() / 2);
+            let Some(Enclosure { determinant: found, .. }) = frame.enclose(&small, &fit) else {
+                print!("none ");
+                continue;
+            };
+            print!(
+                "{:.3}+-{:.1e} (slopes {:.1e}; {:?}) ",
+                found.middle,
+                found.radius,
+                found.deviation() - found.radius,
+                begin.elapsed() / 2
+            );
         }
         println!();
     }
@@ -180,7 +189,10 @@ fn local() {
         for width in [0.1, 0.05, 0.025, 0.0125, 0.006, 0.003] {
             let small = [0, 1, 2].map(|k: usize| [at[k] - 0.5 * width, at[k] + 0.5 * width]);
             let Some(Enclosure { fit, .. }) = frame.enclose(&at.map(|x| [x, x]), &Fit::IDENTITY) else { continue };
-            let Some(Enclosure { determinant: found, .. }) = frame.enclose(&small, &fit) else { print!("none "); continue };
+            let Some(Enclosure { determinant: found, .. }) = frame.enclose(&small, &fit) else {
+                print!("none ");
+                continue;
+            };
             print!("{width} {:.3}+-{:.1e}  ", found.middle, found.radius);
         }
         println!();

@@ -1,8 +1,9 @@
 //! Points move with a cage, in as many steps as it takes.
 
-use super::pair::{CagePair, first_fault};
+use super::map::CageMap;
+use super::pair::CagePair;
 use super::verdict::{Moved, Verdict, judge};
-use crate::coordinates::{CoordinateError, MeanValuePolyhedron, PolyhedronError, SpatialCoordinates};
+use crate::coordinates::{CoordinateError, PolyhedronError};
 use crate::progress::Progress;
 use crate::shape::{PolyhedronPath, PolyhedronPathError};
 
@@ -84,41 +85,13 @@ pub fn deform(
 ) -> Result<Deformed, DeformError> {
     let mut count = steps.first.max(1);
     loop {
-        let (positions, crossing_cage) = moved(cages, path, points, count, progress)?;
+        let map = CageMap::along(cages, path, count)?;
+        let positions = map.forward(points, progress)?;
         let verdict = judge(mesh, points, &positions);
         let is_sound = matches!(verdict, Verdict::Embedded | Verdict::NothingToJudge);
         if is_sound || matches!(verdict, Verdict::Undecided { .. }) || 2 * count > steps.most {
-            return Ok(Deformed { positions, steps: count, verdict, crossing_cage });
+            return Ok(Deformed { positions, steps: count, verdict, crossing_cage: map.crossing() });
         }
         count *= 2;
     }
-}
-
-/// The points after `count` steps, and the first time at which a cage in between meets itself.
-fn moved(
-    cages: &CagePair,
-    path: &dyn PolyhedronPath,
-    points: &[Point3],
-    count: usize,
-    progress: &dyn Progress,
-) -> Result<(Vec<Point3>, Option<f64>), DeformError> {
-    let (mut places, mut cage, mut crossing) = (points.to_vec(), cages.source().to_vec(), None);
-    for step in 0..count {
-        if progress.is_cancelled() {
-            return Err(DeformError::Cancelled);
-        }
-        let time = |k: usize| k as f64 / count as f64;
-        let next = if step + 1 == count { cages.target().to_vec() } else { path.at(time(step + 1))? };
-        let kind = MeanValuePolyhedron::new(&cage, cages.triangles())
-            .map_err(|error| DeformError::Between { time: time(step), error })?;
-        if step > 0 && crossing.is_none() && first_fault(&cage, cages.triangles()).is_some() {
-            crossing = Some(time(step));
-        }
-        // By displacements: where nothing moves, points stay to the last bit.
-        let shifts: Vec<Point3> = cage.iter().zip(&next).map(|(a, b)| [0, 1, 2].map(|k| b[k] - a[k])).collect();
-        let sums = kind.combine(&shifts, &places).map_err(|error| DeformError::NoImage { time: time(step), error })?;
-        places.iter_mut().zip(&sums).for_each(|(place, sum)| (0..3).for_each(|k| place[k] += sum[k]));
-        cage = next;
-    }
-    Ok((places, crossing))
 }

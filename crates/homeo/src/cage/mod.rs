@@ -29,6 +29,7 @@
 
 mod deform;
 mod harmonic;
+mod map;
 mod pair;
 #[cfg(test)]
 mod tests;
@@ -36,5 +37,6 @@ mod verdict;
 
 pub use deform::{DeformError, Deformed, Steps, deform};
 pub use harmonic::{ExtensionError, harmonic_extension};
+pub use map::CageMap;
 pub use pair::{CageError, CagePair, CageSide};
 pub use verdict::{Moved, Verdict, judge};

@@ -13,8 +13,8 @@ pub use bundle::{StoredSection, write_bundle};
 pub use read::{MapFileError, read_map};
 pub use read_hyperbolic::{StoredStructure, kind_of, read_hyperbolic};
 pub use write::{
-    content_sha256, write_complex, write_composite, write_harmonic, write_hyperbolic, write_map, write_moved,
-    write_planar, write_shell,
+    content_sha256, write_cages, write_complex, write_composite, write_harmonic, write_hyperbolic, write_map,
+    write_moved, write_planar, write_shell,
 };
 
 use homeo_core::number::Rational;

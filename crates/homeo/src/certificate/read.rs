@@ -36,6 +36,11 @@ pub enum MapFileError {
          `homeo hyperbolic` makes one"
     )]
     NoMap,
+    /// A map between cages.
+    #[error(
+        "this file holds a map between cages, which `homeo verify` checks; points move by it with `homeo warp`, from the cages"
+    )]
+    OfCages,
     /// An array is missing or has another type or shape.
     #[error("array {name} {what}")]
     Array {
@@ -106,6 +111,7 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
             _ => Err(MapFileError::Manifest("a mesh that has moved has dimension 2 or 3".to_owned())),
         },
         "hyperbolic" => Err(MapFileError::NoMap),
+        "composite-cage" => Err(MapFileError::OfCages),
         other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
     }
 }

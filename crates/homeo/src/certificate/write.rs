@@ -2,7 +2,7 @@
 
 use std::io::{self, Seek, Write};
 
-use homeo_core::mesh::VertexId;
+use homeo_core::mesh::{TriangleComplex, VertexId};
 use homeo_core::planar::{PlanarDomain, Point2};
 use homeo_manifold::hyperbolic::{Structure, is_canonical};
 use homeo_manifold::{Skeleton, Triangulation};
@@ -13,6 +13,7 @@ use zip::{CompressionMethod, ZipWriter};
 
 use super::npy::{Element, encode};
 use super::{FoliationMap, MovedMap, PlanarMap, Provenance, either};
+use crate::cage::CageMap;
 use crate::complex::ComplexMap;
 use crate::composite::CompositeMap;
 use crate::input::SourceMesh;
@@ -94,6 +95,47 @@ fn write_moved_mesh<const K: usize>(
     let after = map.moved().positions();
     archive.array("target_positions", &[after.len(), 3], after.as_flattened().iter().copied())?;
     archive.finish()
+}
+
+/// Writes a composite mean value map between cages, with what its certificate needs: triangles counter-clockwise from
+/// outside. The same map gives the same bytes.
+///
+/// # Errors
+/// When `out` cannot be written; when the triangles of the map make no mesh.
+///
+/// # Example
+/// ```
+/// use homeo::cage::{CageMap, CagePair};
+/// use homeo::certificate::{Provenance, write_cages};
+/// use homeo::shape::StraightPolyhedra;
+/// use homeo_verify::{Verdict, verify_bytes};
+/// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
+/// let higher = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 8.0]];
+/// let cages = CagePair::new(corners, higher, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let path = StraightPolyhedra::new(cages.source().to_vec(), cages.target().to_vec())?;
+/// let mut file = std::io::Cursor::new(Vec::new());
+/// write_cages(&CageMap::along(&cages, &path, 1)?, &Provenance::default(), &mut file)?;
+/// assert!(matches!(verify_bytes(file.get_ref())?, Verdict::Certified(_)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_cages(map: &CageMap, provenance: &Provenance, out: &mut (impl Write + Seek)) -> io::Result<()> {
+    let [first, later @ ..] = map.stages() else { return Err(io::Error::other("a map between cages has cages")) };
+    let corner = |v: u32| first.get(v as usize).copied().unwrap_or_default();
+    let volume: f64 = map.triangles().iter().map(|&[a, b, c]| determinant(corner(a), corner(b), corner(c))).sum();
+    let is_outward = volume > 0.0;
+    let outward = |&[a, b, c]: &[u32; 3]| if is_outward { [a, b, c] } else { [a, c, b] };
+    let triangles: Vec<[u32; 3]> = map.triangles().iter().map(outward).collect();
+    let complex = TriangleComplex::from_indices(first.len(), &triangles).map_err(io::Error::other)?;
+    let source = SourceMesh::new(first.clone(), complex);
+    let claim = Claim { kind: "composite-cage", target: "polyhedron", centre: None, length_unit: 1.0 };
+    let mut archive = Archive::begin(&source, &claim, provenance, out)?;
+    let later = later.concat();
+    archive.array("stage_positions", &[later.len(), 3], later.as_flattened().iter().copied())?;
+    archive.finish()
+}
+
+fn determinant(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
+    (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3])).sum()
 }
 
 /// Writes a map between planar domains with what its certificate needs. The same map gives the same bytes.
