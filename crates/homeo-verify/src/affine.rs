@@ -141,27 +141,21 @@ impl<const N: usize> Sub for Form<N> {
 impl<const N: usize> Mul for Form<N> {
     type Output = Self;
     /// Squares of coordinates lie between 0 and 1: half of what they are multiplied by goes to the middle.
+    #[inline]
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self.slopes, other.slopes);
         let slopes = std::array::from_fn(|k| self.middle * b[k] + other.middle * a[k]);
-        let (mut squares, mut halves, mut mixed, mut rounded) = (0.0, 0.0, 0.0, 0.0);
+        let (mut squares, mut halves, mut mixed) = (0.0, 0.0, 0.0);
         for k in 0..N {
             squares += a[k] * b[k];
             halves += 0.5 * (a[k] * b[k]).abs();
             for l in 0..k {
-                let products = [a[k] * b[l], a[l] * b[k]];
-                mixed += (products[0] + products[1]).abs();
-                rounded += products[0].abs() + products[1].abs();
+                mixed += (a[k] * b[l] + a[l] * b[k]).abs();
             }
         }
-        let (own, others) = (size(a), size(b));
-        let (middle, other_middle) = (self.middle.abs(), other.middle.abs());
-        let radius = halves
-            + mixed
-            + ROUNDED * rounded
-            + (middle + own) * other.radius
-            + (other_middle + others + other.radius) * self.radius;
-        let terms = middle * (other_middle + others) + other_middle * own + halves;
+        let (most, other_most) = (self.terms(), other.terms());
+        let radius = (halves + mixed) + (most * other.radius + (other_most + other.radius) * self.radius);
+        let terms = most * other_most;
         Self::rounded(self.middle * other.middle + 0.5 * squares, slopes, radius, terms)
     }
 }

@@ -4,7 +4,7 @@
 //! `m_k' = -(k + 1) m_(k+1)`, and no more than `1 / (2 k + 1)` and `(1 + u)^-k`, for `t^2 / (1 + u t^2) <= 1 / (1 + u)`. By parts
 //! `(2 k - 1) m_(k-1) = 2 k u m_k + (1 + u)^-k`.
 
-use super::jet::{Form, Jet};
+use super::jet::{Form, Jet, three};
 
 /// More than the relative errors of `moments`, which are below `10^-14`.
 const ROUNDED: f64 = 1e-13;
@@ -70,7 +70,7 @@ pub(super) fn quotient(u: Jet, other: Jet) -> Jet {
     let [slope, bend] = enclosed([1, 2], middle);
     let least = u.value.least().min(other.value.least()).max(0.0);
     let third = 6.0 * (1.0f64 / 7.0).min((1.0 + least).powi(-3)) * (1.0 + 16.0 * f64::EPSILON);
-    let slopes = [0, 1, 2].map(|k| {
+    let slopes = three(|k| {
         let (a, b) = (u.slopes[k], other.slopes[k]);
         (bend * (a + b)).widened(0.125 * third * apart * (a.size() + b.size()))
     });

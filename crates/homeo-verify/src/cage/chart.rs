@@ -3,7 +3,7 @@
 //! At a vertex `v` points are `v + r y`, with `y` on the side of a cube. At an edge from `v`, `y = e + s z`, with `e` along
 //! the edge and `z` on the side of a square across. So `r` and `s` are factors of what vanishes there.
 
-use super::jet::{Form, Jet, Vector, constant, difference, plus, times};
+use super::jet::{Form, Jet, Vector, constant, difference, plus, three, times};
 use super::outline::Outline;
 
 /// Intervals of the three parameters.
@@ -83,8 +83,8 @@ impl Chart {
 
     /// The points of a cell.
     pub fn place(&self, outline: &Outline, cell: &Cell) -> Place {
-        let parameters = [0, 1, 2].map(|k| Jet::parameter(cell[k], k));
-        let unit = |axis: usize| [0, 1, 2].map(|k| if k == axis { Form::ONE } else { Form::ZERO });
+        let parameters = three(|k| Jet::parameter(cell[k], k));
+        let unit = |axis: usize| three(|k| if k == axis { Form::ONE } else { Form::ZERO });
         let [first, second, third] = parameters;
         let nothing = [Jet::ZERO; 3];
         match *self {

@@ -18,6 +18,8 @@ const REACH: f64 = 0.6;
 const SPARE: f64 = 1e-9;
 /// Parts of the box about the cage that are begun with, along each axis.
 const PARTS: usize = 8;
+/// After so many cuts it is looked afresh along which parameter the determinant bends.
+const AFRESH: u32 = 6;
 
 /// How large cubes at vertices are, and cones at edges.
 pub(super) struct Cover<'a> {
@@ -33,6 +35,9 @@ struct Waiting {
     cell: Cell,
     fit: Fit,
     is_inside: bool,
+    /// How much the determinant bends along each parameter.
+    bends: [f64; 3],
+    depth: u32,
 }
 
 /// How a chart's cell ends.
@@ -194,11 +199,11 @@ impl<'a> Cover<'a> {
     /// Bounds the determinant in a cell, halving it until its sign is known, with no more enclosures than `most`.
     pub fn bound(&self, chart: Chart, cell: Cell, most: u64) -> Outcome {
         let frame = Frame::new(self.outline, chart);
-        let widths = cell.map(|[low, high]| high - low);
+        let bends = cell.map(|[low, high]| 1.0 / (high - low));
         // Large cells first: a fold shows before the places where it ends are bisected without end.
-        let mut waiting = VecDeque::from([Waiting { cell, fit: Fit::IDENTITY, is_inside: false }]);
+        let mut waiting = VecDeque::from([Waiting { cell, fit: Fit::IDENTITY, is_inside: false, bends, depth: 0 }]);
         let mut count = 0;
-        while let Some(Waiting { cell, mut fit, is_inside }) = waiting.pop_front() {
+        while let Some(Waiting { cell, mut fit, is_inside, mut bends, depth }) = waiting.pop_front() {
             if self.is_covered(chart, &cell) {
                 continue;
             }
@@ -211,8 +216,6 @@ impl<'a> Cover<'a> {
                 return Outcome::Undecided(self.middle(chart, &cell));
             }
             count += 1;
-            let mut shares = [0, 1, 2]
-                .map(|k| (cell[k][1] - cell[k][0]) / if matches!(chart, Chart::Open) { 1.0 } else { widths[k] });
             if let Some(found) = frame.enclose(&cell, &fit) {
                 if found.determinant.is_positive() {
                     continue;
@@ -221,12 +224,13 @@ impl<'a> Cover<'a> {
                     return Outcome::Negative(self.middle(chart, &cell));
                 }
                 fit = found.fit;
-                if found.restless.iter().all(|x| x.is_finite()) && !matches!(chart, Chart::Edge { .. }) {
-                    shares = found.restless;
-                }
             }
+            if depth % AFRESH == 0 {
+                bends = self::bends(&frame, &cell).unwrap_or(bends);
+            }
+            let shares = [0, 1, 2].map(|k| bends[k] * (cell[k][1] - cell[k][0]));
             for half in halves(&cell, shares) {
-                waiting.push_back(Waiting { cell: half, fit, is_inside });
+                waiting.push_back(Waiting { cell: half, fit, is_inside, bends, depth: depth + 1 });
             }
         }
         Outcome::Positive(count)
@@ -235,6 +239,21 @@ impl<'a> Cover<'a> {
     fn side(&self, frame: &Frame, cell: &Cell) -> Option<bool> {
         if frame.is_clear(cell) { self.is_inside(frame.chart, cell) } else { None }
     }
+}
+
+/// How much the determinant bends along each parameter: what is not known of it on a line through the middle grows with
+/// the square of its length.
+fn bends(frame: &Frame, cell: &Cell) -> Option<[f64; 3]> {
+    let middle = cell.map(|[low, high]| [0.5 * low + 0.5 * high; 2]);
+    let fit = frame.enclose(&middle, &Fit::IDENTITY)?.fit;
+    let mut bends = [0.0; 3];
+    for axis in 0..3 {
+        let mut line = middle;
+        let [low, high] = cell[axis];
+        line[axis] = [0.55 * low + 0.45 * high, 0.45 * low + 0.55 * high];
+        bends[axis] = frame.enclose(&line, &fit)?.determinant.radius.sqrt() / (high - low);
+    }
+    bends.iter().all(|x| x.is_finite()).then_some(bends)
 }
 
 /// Cut across the side with the greatest share.

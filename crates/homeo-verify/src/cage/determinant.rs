@@ -5,13 +5,15 @@
 
 use super::arctangent::{arctangent, quotient};
 use super::chart::{Cell, Chart, Level, Place, main_axis};
-use super::jet::{Form, Jet, Vector, across, along, cross, determinant, difference, dot, length, minus, plus, times};
+use super::jet::{
+    Form, Jet, Vector, across, along, cross, determinant, difference, dot, length, minus, plus, three, times,
+};
 use super::outline::{Edge, Face, Outline};
 
 /// Faces nearer than so many times their enclosure's width are multiplied by.
 const NEAR: f64 = 1e9;
 /// What a distance from a plane is of that from an edge, at most, where the difference quotient is taken.
-const LOW: f64 = 0.5;
+const LOW: f64 = 0.4;
 
 /// An affine map near the mean value map, by doubles: what it misses of the images is little.
 #[derive(Clone, Copy)]
@@ -30,8 +32,6 @@ pub(super) struct Enclosure {
     pub determinant: Form,
     /// The affine map at the middle.
     pub fit: Fit,
-    /// How much angles change along each parameter.
-    pub restless: [f64; 3],
 }
 
 /// A vertex as seen from a cell.
@@ -124,12 +124,12 @@ impl<'a> Frame<'a> {
         let mut rest = [Jet::ZERO; 3];
         for (weight, offset) in weights.iter().zip(&self.offsets) {
             let missed = residual(offset, &matrix, fit.shift);
-            rest = [0, 1, 2].map(|k| rest[k] + weight.scaled(missed[k]));
+            rest = three(|k| rest[k] + weight.scaled(missed[k]));
         }
         let inverse = total.inverse();
         let rest = rest.map(|x| x * inverse);
         let (determinant, fit) = self.conclude(&place, &matrix, fit.shift, rest);
-        Some(Enclosure { determinant, fit, restless: restless(&sights) })
+        Some(Enclosure { determinant, fit })
     }
 
     /// The matrix of an affine map near the given one; at an edge one that takes it to its image.
@@ -229,14 +229,14 @@ impl<'a> Frame<'a> {
     /// Formulas (1), (3) and (4): the weights of a face are added; its share of the total is returned.
     fn add(&self, place: &Place, sights: &[Sight], face: usize, view: View, way: Way, weights: &mut [Jet]) -> Jet {
         let (it, level) = (&self.outline.faces[face], self.levels[face]);
-        let angles = [0, 1, 2].map(|k| sights[it.edges[k] as usize].angle);
+        let angles = three(|k| sights[it.edges[k] as usize].angle);
         let over_height = match way {
             Way::Divide => dot(view.inside, angles).halved().over(view.height),
             Way::Multiply => dot(view.inside, angles).halved(),
             Way::Cross => view.height * self.crossing(place, sights, face, view),
         };
         let height = if way == Way::Multiply { view.height.square() } else { view.height }.halved();
-        let turned = [0, 1, 2].map(|k| self.lowered(place, angles[k], [level, self.edge_levels[it.edges[k] as usize]]));
+        let turned = three(|k| self.lowered(place, angles[k], [level, self.edge_levels[it.edges[k] as usize]]));
         for k in (0..3).filter(|&k| self.edge_levels[it.edges[k] as usize] == level) {
             let products = it.products[k];
             let sum = turned[0].scaled(products[0]) + turned[1].scaled(products[1]) + turned[2].scaled(products[2]);
@@ -318,7 +318,7 @@ impl<'a> Frame<'a> {
 
     /// Formula (6): the determinant, and the affine map at the middle of the cell.
     fn conclude(&self, place: &Place, matrix: &[Vector<Form>; 3], shift: [f64; 3], rest: Vector<Jet>) -> (Form, Fit) {
-        let image = |v: Vector<Form>| [0, 1, 2].map(|k| dot(matrix[k], v));
+        let image = |v: Vector<Form>| three(|k| dot(matrix[k], v));
         let [r, s] = [place.r.value, place.s.value];
         let values = rest.map(|x| x.value);
         let slope = |axis: usize| rest.map(|x| x.slopes[axis]);
@@ -327,7 +327,7 @@ impl<'a> Frame<'a> {
             1 => [plus(values, times(r, slope(0))), slope(1), slope(2)],
             _ => [times(s, plus(values, times(r, slope(0)))), plus(values, times(s, slope(1))), slope(2)],
         };
-        let columns = [0, 1, 2].map(|k| plus(image(place.columns[k]), added[k]));
+        let columns = three(|k| plus(image(place.columns[k]), added[k]));
         let turn = determinant(place.columns);
         let result = determinant(columns) * turn.inverse();
         let scale = [Form::ONE, r, r * s][self.top()].middle;
@@ -351,20 +351,12 @@ fn fit(
     let derivative: [[f64; 3]; 3] = [0, 1, 2]
         .map(|row| [0, 1, 2].map(|column| (0..3).map(|k| columns[k][row] * rows[k][column]).sum::<f64>() / size));
     let at = place.position.map(|x| x.value.middle);
-    let moved = [0, 1, 2].map(|k| {
+    let moved = three(|k| {
         let before = dot(matrix[k].map(|x| x.middle), at);
         if is_open { shift[k] + missed[k] + before - dot(derivative[k], at) } else { 0.0 }
     });
     let is_finite = derivative.iter().flatten().chain(&moved).all(|x| x.is_finite());
     if is_finite { Fit { matrix: derivative, shift: moved } } else { Fit::IDENTITY }
-}
-
-fn restless(sights: &[Sight]) -> [f64; 3] {
-    let mut sums = [0.0; 3];
-    for angle in sights.iter().map(|sight| sight.angle.value) {
-        (0..3).for_each(|k| sums[k] += (angle.slopes[k] / angle.middle).powi(2));
-    }
-    sums
 }
 
 impl View {
@@ -397,7 +389,7 @@ impl Sight {
 /// How far a vertex misses its image under an affine map.
 fn residual(offset: &[Vector<Form>; 2], matrix: &[Vector<Form>; 3], shift: [f64; 3]) -> Vector<Form> {
     let [from, to] = offset;
-    [0, 1, 2].map(|k| to[k] - Form::exact(shift[k]) - dot(matrix[k], *from))
+    three(|k| to[k] - Form::exact(shift[k]) - dot(matrix[k], *from))
 }
 
 fn pi() -> Form {

@@ -5,6 +5,12 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 pub(super) type Form = affine::Form<3>;
 
+/// Three of a kind, written out: `map` of arrays moves much memory.
+#[inline(always)]
+pub(super) fn three<T>(of: impl Fn(usize) -> T) -> [T; 3] {
+    [of(0), of(1), of(2)]
+}
+
 /// A vector in space.
 pub(super) type Vector<T> = [T; 3];
 
@@ -30,8 +36,9 @@ impl Jet {
         Jet { value: Form::between(interval, axis), slopes }
     }
 
+    #[inline]
     pub fn scaled(self, factor: Form) -> Jet {
-        Jet { value: self.value * factor, slopes: self.slopes.map(|slope| slope * factor) }
+        Jet { value: self.value * factor, slopes: three(|k| self.slopes[k] * factor) }
     }
 
     pub fn doubled(self) -> Jet {
@@ -42,15 +49,16 @@ impl Jet {
         self.scaled(Form::exact(0.5))
     }
 
+    #[inline]
     pub fn square(self) -> Jet {
         let twice = self.value + self.value;
-        Jet { value: self.value * self.value, slopes: self.slopes.map(|slope| twice * slope) }
+        Jet { value: self.value * self.value, slopes: three(|k| twice * self.slopes[k]) }
     }
 
     pub fn inverse(self) -> Jet {
         let value = self.value.inverse();
         let factor = -(value * value);
-        Jet { value, slopes: self.slopes.map(|slope| factor * slope) }
+        Jet { value, slopes: three(|k| factor * self.slopes[k]) }
     }
 
     pub fn over(self, other: Jet) -> Jet {
@@ -60,21 +68,24 @@ impl Jet {
 
 impl Add for Jet {
     type Output = Jet;
+    #[inline]
     fn add(self, other: Jet) -> Jet {
-        let slopes = [0, 1, 2].map(|k| self.slopes[k] + other.slopes[k]);
+        let slopes = three(|k| self.slopes[k] + other.slopes[k]);
         Jet { value: self.value + other.value, slopes }
     }
 }
 
 impl Neg for Jet {
     type Output = Jet;
+    #[inline]
     fn neg(self) -> Jet {
-        Jet { value: -self.value, slopes: self.slopes.map(Form::neg) }
+        Jet { value: -self.value, slopes: three(|k| -self.slopes[k]) }
     }
 }
 
 impl Sub for Jet {
     type Output = Jet;
+    #[inline]
     fn sub(self, other: Jet) -> Jet {
         self + -other
     }
@@ -82,15 +93,16 @@ impl Sub for Jet {
 
 impl Mul for Jet {
     type Output = Jet;
+    #[inline]
     #[allow(clippy::suspicious_arithmetic_impl, reason = "the product rule has a sum")]
     fn mul(self, other: Jet) -> Jet {
-        let slopes = [0, 1, 2].map(|k| self.value * other.slopes[k] + self.slopes[k] * other.value);
+        let slopes = three(|k| self.value * other.slopes[k] + self.slopes[k] * other.value);
         Jet { value: self.value * other.value, slopes }
     }
 }
 
 pub(super) fn difference(a: Vector<f64>, b: Vector<f64>) -> Vector<Form> {
-    [0, 1, 2].map(|k| Form::exact(a[k]) - Form::exact(b[k]))
+    three(|k| Form::exact(a[k]) - Form::exact(b[k]))
 }
 
 pub(super) fn constant(a: Vector<Form>) -> Vector<Jet> {
@@ -98,15 +110,15 @@ pub(super) fn constant(a: Vector<Form>) -> Vector<Jet> {
 }
 
 pub(super) fn plus<T: Copy + Add<Output = T>>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
-    [0, 1, 2].map(|k| a[k] + b[k])
+    three(|k| a[k] + b[k])
 }
 
 pub(super) fn minus<T: Copy + Sub<Output = T>>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
-    [0, 1, 2].map(|k| a[k] - b[k])
+    three(|k| a[k] - b[k])
 }
 
 pub(super) fn times<T: Copy + Mul<Output = T>>(factor: T, a: Vector<T>) -> Vector<T> {
-    a.map(|x| factor * x)
+    three(|k| factor * a[k])
 }
 
 pub(super) fn dot<T: Copy + Add<Output = T> + Mul<Output = T>>(a: Vector<T>, b: Vector<T>) -> T {
@@ -119,12 +131,14 @@ pub(super) fn along(a: Vector<Jet>, b: Vector<Form>) -> Jet {
 }
 
 pub(super) fn cross<T: Copy + Sub<Output = T> + Mul<Output = T>>(a: Vector<T>, b: Vector<T>) -> Vector<T> {
-    [(1, 2), (2, 0), (0, 1)].map(|(k, l)| a[k] * b[l] - a[l] * b[k])
+    let minor = |k: usize, l: usize| a[k] * b[l] - a[l] * b[k];
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
 /// The cross product with a vector that does not change.
 pub(super) fn across(a: Vector<Jet>, b: Vector<Form>) -> Vector<Jet> {
-    [(1, 2), (2, 0), (0, 1)].map(|(k, l)| a[k].scaled(b[l]) - a[l].scaled(b[k]))
+    let minor = |k: usize, l: usize| a[k].scaled(b[l]) - a[l].scaled(b[k]);
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
 pub(super) fn determinant(columns: [Vector<Form>; 3]) -> Form {
@@ -150,9 +164,9 @@ pub(super) fn size(p: Vector<Form>) -> Form {
 
 /// The length of a vector, with its derivatives.
 pub(super) fn length(p: Vector<Jet>) -> Jet {
-    let values = p.map(|c| c.value);
+    let values = three(|k| p[k].value);
     let value = size(values);
     let inverse = value.inverse();
-    let slopes = [0, 1, 2].map(|k| dot(values, p.map(|c| c.slopes[k])) * inverse);
+    let slopes = three(|k| dot(values, three(|l| p[l].slopes[k])) * inverse);
     Jet { value, slopes }
 }

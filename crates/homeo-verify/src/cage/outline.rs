@@ -1,6 +1,6 @@
 //! A cage: a closed triangle mesh, with what is computed once for all its charts.
 
-use super::jet::{Form, Vector, cross, difference, dot, size, times};
+use super::jet::{Form, Vector, cross, difference, dot, size, three, times};
 use std::collections::BTreeMap;
 
 pub(super) type Point = [f64; 3];
@@ -68,7 +68,7 @@ fn edge(a: Point, b: Point, ends: [u32; 2]) -> Edge {
 }
 
 fn face(points: [Point; 3], corners: [u32; 3], edges: [u32; 3]) -> Face {
-    let sides = [0, 1, 2].map(|k| difference(points[(k + 2) % 3], points[(k + 1) % 3]));
+    let sides = three(|k| difference(points[(k + 2) % 3], points[(k + 1) % 3]));
     let across = cross(sides[0], sides[1]);
     let twice_area = size(across);
     let outward = times(twice_area.inverse(), across);

@@ -180,21 +180,89 @@ fn explore() {
 
 #[test]
 fn local() {
-    let (points, triangles) = notched();
-    let images = bent(&points);
+    let (points, images, triangles) = bars();
     let outline = Outline::new(&points, &images, &triangles);
-    for at in [[1.01, 0.106, 0.63], [0.105, 1.008, 0.979], [0.48, 1.476, 1.435], [0.633, 1.883, 0.293]] {
-        let frame = Frame::new(&outline, Chart::Open);
-        print!("{at:?}: ");
-        for width in [0.1, 0.05, 0.025, 0.0125, 0.006, 0.003] {
-            let small = [0, 1, 2].map(|k: usize| [at[k] - 0.5 * width, at[k] + 0.5 * width]);
-            let Some(Enclosure { fit, .. }) = frame.enclose(&at.map(|x| [x, x]), &Fit::IDENTITY) else { continue };
-            let Some(Enclosure { determinant: found, .. }) = frame.enclose(&small, &fit) else {
-                print!("none ");
+    let cover = Cover::new(&outline);
+    for (chart, cell) in cover.cells().into_iter().enumerate().filter(|(k, _)| k % 31 == 0).map(|(_, x)| x) {
+        if matches!(chart, Chart::Open) || matches!(chart, Chart::Vertex { .. }) {
+            continue;
+        }
+        let frame = Frame::new(&outline, chart);
+        println!("{chart:?} {cell:?}");
+        for share in [0.25, 0.5] {
+            let middle = [0, 1, 2].map(|k| cell[k][0] + [0.4, 0.5, share][k] * (cell[k][1] - cell[k][0]));
+            let Some(Enclosure { fit, determinant, .. }) = frame.enclose(&middle.map(|x| [x, x]), &Fit::IDENTITY)
+            else {
                 continue;
             };
-            print!("{width} {:.3}+-{:.1e}  ", found.middle, found.radius);
+            print!("  {middle:?} {:.3}+-{:.1e}:", determinant.middle, determinant.radius);
+            for axis in 0..4 {
+                print!(" | ");
+                for width in [0.4, 0.2, 0.1, 0.05] {
+                    let small = [0, 1, 2].map(|k: usize| {
+                        let half = if k == axis || axis == 3 { 0.5 * width * (cell[k][1] - cell[k][0]) } else { 0.0 };
+                        [middle[k] - half, middle[k] + half]
+                    });
+                    match frame.enclose(&small, &fit) {
+                        Some(found) => print!(" {:.1e}", found.determinant.radius),
+                        None => print!(" none"),
+                    }
+                }
+            }
+            println!();
         }
-        println!();
     }
+}
+
+fn bars() -> (Vec<Point>, Vec<Point>, Vec<[u32; 3]>) {
+    let read = |name: &str| {
+        let text = std::fs::read_to_string(format!("../../testdata/cages/{name}.obj")).unwrap();
+        let rows = |kind: &str| -> Vec<Vec<f64>> {
+            let kind = kind.to_owned();
+            text.lines()
+                .filter(|l| l.starts_with(&kind))
+                .map(|l| l.split_whitespace().skip(1).map(|x| x.split('/').next().unwrap().parse().unwrap()).collect())
+                .collect()
+        };
+        let points: Vec<Point> = rows("v ").iter().map(|r| [r[0], r[1], r[2]]).collect();
+        let faces: Vec<[u32; 3]> = rows("f ").iter().map(|r| [0, 1, 2].map(|k| r[k] as u32 - 1)).collect();
+        (points, faces)
+    };
+    let (points, triangles) = read("bar");
+    (points, read("bar_twisted").0, triangles)
+}
+
+#[test]
+fn bar() {
+    let (points, images, triangles) = bars();
+    let steps: f64 = std::env::var("STEPS").map_or(1.0, |x| x.parse().unwrap());
+    let images: Vec<Point> =
+        points.iter().zip(&images).map(|(a, b)| [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) / steps)).collect();
+    let outline = Outline::new(&points, &images, &triangles);
+    let cover = Cover::new(&outline);
+    let n: usize = std::env::var("NTH").map_or(1, |x| x.parse().unwrap());
+    let begin = std::time::Instant::now();
+    println!("fold: {:?}", cover.sampled_fold());
+    let mut all = Vec::new();
+    let mut counts = [0; 3];
+    for (chart, cell) in cover.cells().into_iter().enumerate().filter(|(k, _)| k % n == 0).map(|(_, x)| x) {
+        let level = match chart {
+            Chart::Open => 0,
+            Chart::Vertex { .. } => 1,
+            Chart::Edge { .. } => 2,
+        };
+        match cover.bound(chart, cell, 4_000) {
+            Outcome::Positive(count) => {
+                counts[level] += count;
+                all.push((count, level, format!("{chart:?} {cell:?}")));
+            }
+            other => all.push((4000, level, format!("{chart:?} {cell:?} {other:?}"))),
+        }
+    }
+    all.sort_by(|a, b| b.0.cmp(&a.0));
+    for line in &all[..all.len().min(40)] {
+        println!("{line:?}");
+    }
+    let count = |level: usize| all.iter().filter(|x| x.1 == level).count();
+    println!("{counts:?} of {:?} {:?}", [0, 1, 2].map(count), begin.elapsed());
 }
