@@ -123,7 +123,7 @@ impl<'a> Cover<'a> {
     }
 
     /// Whether the charts of vertices and edges cover a cell of another one.
-    fn is_covered(&self, chart: Chart, cell: &Cell) -> bool {
+    pub fn is_covered(&self, chart: Chart, cell: &Cell) -> bool {
         match chart {
             Chart::Open => {
                 let corners = corners(cell);
