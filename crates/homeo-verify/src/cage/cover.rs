@@ -199,9 +199,10 @@ impl<'a> Cover<'a> {
     /// Bounds the determinant in a cell, halving it until its sign is known, with no more enclosures than `most`.
     pub fn bound(&self, chart: Chart, cell: Cell, most: u64) -> Outcome {
         let frame = Frame::new(self.outline, chart);
-        let bends = cell.map(|[low, high]| 1.0 / (high - low));
+        let even = cell.map(|[low, high]| 1.0 / (high - low));
         // Large cells first: a fold shows before the places where it ends are bisected without end.
-        let mut waiting = VecDeque::from([Waiting { cell, fit: Fit::IDENTITY, is_inside: false, bends, depth: 0 }]);
+        let mut waiting =
+            VecDeque::from([Waiting { cell, fit: Fit::IDENTITY, is_inside: false, bends: even, depth: 0 }]);
         let mut count = 0;
         while let Some(Waiting { cell, mut fit, is_inside, mut bends, depth }) = waiting.pop_front() {
             if self.is_covered(chart, &cell) {
@@ -216,6 +217,7 @@ impl<'a> Cover<'a> {
                 return Outcome::Undecided(self.middle(chart, &cell));
             }
             count += 1;
+            let mut is_known = false;
             if let Some(found) = frame.enclose(&cell, &fit) {
                 if found.determinant.is_positive() {
                     continue;
@@ -223,12 +225,15 @@ impl<'a> Cover<'a> {
                 if found.determinant.is_negative() && is_inside {
                     return Outcome::Negative(self.middle(chart, &cell));
                 }
+                is_known = found.determinant.deviation().is_finite();
                 fit = found.fit;
             }
             if depth % AFRESH == 0 {
                 bends = self::bends(&frame, &cell).unwrap_or(bends);
             }
-            let shares = [0, 1, 2].map(|k| bends[k] * (cell[k][1] - cell[k][0]));
+            // Where nothing is known what bends is not what matters.
+            let by = if is_known { bends } else { even };
+            let shares = [0, 1, 2].map(|k| by[k] * (cell[k][1] - cell[k][0]));
             for half in halves(&cell, shares) {
                 waiting.push_back(Waiting { cell: half, fit, is_inside, bends, depth: depth + 1 });
             }

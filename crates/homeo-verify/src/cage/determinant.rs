@@ -10,8 +10,6 @@ use super::jet::{
 };
 use super::outline::{Edge, Face, Outline};
 
-/// Faces nearer than so many times their enclosure's width are multiplied by.
-const NEAR: f64 = 1e9;
 /// What a distance from a plane is of that from an edge, at most, where the difference quotient is taken.
 const LOW: f64 = 0.4;
 
@@ -169,7 +167,7 @@ impl<'a> Frame<'a> {
         View { height: distance(self.levels[face], it.corners[0], it.normal), inside: [0, 1, 2].map(inside) }
     }
 
-    /// How each face is looked at; none if several are near.
+    /// How each face is looked at: the nearest plane that may be met inside of its face is multiplied by. None if several are near.
     fn ways(&self, place: &Place, views: &[View]) -> Option<Vec<Way>> {
         let (mut ways, mut nearest, mut is_decided) = (Vec::with_capacity(views.len()), None, true);
         for (face, view) in views.iter().enumerate() {
@@ -186,7 +184,7 @@ impl<'a> Frame<'a> {
             let height = view.height.value;
             let share = height.middle.abs() / height.deviation();
             is_decided &= share > 1.0 || nearest.is_none_or(|(other, _)| other > 1.0);
-            if share < NEAR && nearest.is_none_or(|(other, _)| share < other) {
+            if nearest.is_none_or(|(other, _)| share < other) {
                 nearest = Some((share, face));
             }
         }

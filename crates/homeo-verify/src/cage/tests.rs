@@ -43,7 +43,8 @@ fn level(chart: Chart) -> usize {
     }
 }
 
-/// Cells of all charts, many of them across planes of faces and some across faces: a tenth of the radius is often too little.
+/// Cells of all charts, many of them across planes of faces and some across faces. They are narrow: without the slopes a quarter
+/// would not hold what they should.
 #[test]
 fn determinants_lie_in_their_enclosures() {
     let (points, triangles) = notched();
@@ -51,10 +52,10 @@ fn determinants_lie_in_their_enclosures() {
     let outline = Outline::new(&points, &images, &triangles);
     let cover = Cover::new(&outline);
     let mut random = Random(5);
-    let (mut known, mut outside) = ([0; 3], [0; 3]);
+    let (mut known, mut without_slopes) = ([0; 3], [0; 3]);
     for (chart, cell) in cover.cells() {
         let frame = Frame::new(&outline, chart);
-        for width in [3e-3, 3e-2] {
+        for width in [3e-3, 3e-3, 1e-2, 3e-2] {
             let small: Cell = cell.map(|[low, high]| {
                 let from = low + (high - low) * (1.0 - width) * (0.05 + 0.95 * random.unit());
                 [from, from + width * (high - low)]
@@ -75,10 +76,11 @@ fn determinants_lie_in_their_enclosures() {
             let miss = (there - expected).abs();
             assert!(miss < found.radius + 2e-6, "{chart:?} {small:?} {x:?} {found:?} {expected}");
             known[level(chart)] += 1;
-            outside[level(chart)] += usize::from(miss > 0.05 * found.radius + 2e-6);
+            without_slopes[level(chart)] += usize::from((found.middle - expected).abs() > found.radius + 2e-6);
         }
     }
-    assert!(known.iter().zip(outside).all(|(&known, outside)| known > 30 && 10 * outside > known), "{known:?} {outside:?}");
+    let is_telling = |(&known, without): (&usize, usize)| known > 30 && 4 * without > known;
+    assert!(known.iter().zip(without_slopes).all(is_telling), "{known:?} {without_slopes:?}");
 }
 
 /// What is left to a chart of a vertex or an edge is in one.
@@ -128,7 +130,7 @@ fn cells_are_decided() {
     let outline = Outline::new(&points, &images, &triangles);
     let cover = Cover::new(&outline);
     let open = [[0.9, 1.1], [0.9, 1.1], [0.6, 0.8]];
-    assert!(matches!(cover.bound(Chart::Open, open, 100), Outcome::Positive(1..)));
+    assert!(matches!(cover.bound(Chart::Open, open, 2000), Outcome::Positive(1..)));
     let beyond = [[1.2, 1.4], [1.6, 1.8], [0.6, 0.8]];
     assert!(matches!(cover.bound(Chart::Open, beyond, 100), Outcome::Positive(0)));
     let corner = Chart::Vertex { vertex: 9, axis: 1, side: -1.0 };

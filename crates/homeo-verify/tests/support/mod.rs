@@ -11,6 +11,7 @@ pub mod oracle;
 pub mod plane;
 pub mod random;
 pub mod shells;
+pub mod spatial;
 pub mod write;
 
 use homeo_verify::{Verdict, Witness, verify_bytes};
@@ -30,6 +31,7 @@ pub struct Map {
     pub lengths: Vec<u32>,
     pub section_vertices: Vec<u32>,
     pub section_coordinates: Vec<Vec<f64>>,
+    /// Of a map between cages: of all cages after the source.
     pub target_positions: Vec<Vec<f64>>,
     /// Bottom, middle and top points of the columns of a shell.
     pub levels: [Vec<Vec<f64>>; 3],
@@ -82,7 +84,7 @@ impl Map {
         if self.text("target") == "space" {
             return self.manifest["dimension"].as_u64().unwrap_or_default() as usize + 1;
         }
-        if ["square", "disk", "shell", "section", "immersed-shell", "embedded-shell"]
+        if ["square", "disk", "shell", "section", "immersed-shell", "embedded-shell", "polyhedron"]
             .contains(&self.text("target").as_str())
         {
             3

@@ -115,6 +115,10 @@ pub fn entries(map: &Map) -> Vec<(String, Vec<u8>)> {
         add("target_positions", "<f8", map.target_positions.len(), 3, little_endian!(map.target_positions));
         return entries;
     }
+    if map.text("kind") == "composite-cage" {
+        add("stage_positions", "<f8", map.target_positions.len(), 3, little_endian!(map.target_positions));
+        return entries;
+    }
     if map.text("kind") == "piecewise-linear" {
         add("target_positions", "<f8", map.target_positions.len(), size - 1, little_endian!(map.target_positions));
         return entries;
