@@ -113,7 +113,7 @@ fn described(claim: &Claim, bytes: &[u8], path: &Path) -> Value {
         return proof::map_json(&map, path);
     }
     let count = |what: &str| claim.checked.iter().find(|(name, _)| name.starts_with(what)).map(|&(_, n)| n);
-    if claim.kind == "moved-mesh" {
+    if matches!(claim.kind.as_str(), "moved-mesh" | "composite-cage") {
         let cells = if count("source triangles").is_some() { "triangles" } else { "tetrahedra" };
         let vertices = count("source vertices");
         return json!({"path": path.display().to_string(), "vertices": vertices, cells: count(&format!("source {cells}"))});

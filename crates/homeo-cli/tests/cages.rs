@@ -169,7 +169,50 @@ fn the_map_of_a_mesh_is_kept_with_its_certificate() {
     assert!(far.stderr.contains("outside the moved mesh"), "{}", far.stderr);
     folder.line("report twisted.homeo -o page.html").expect(3);
     folder.line("pl twisted.homeo -o a.ply --image b.ply").expect(3);
-    folder.line(&format!("warp testdata/points/star.csv {BARS} --map m.homeo")).expect(2);
+}
+
+const TENTS: &str = "--from testdata/cages/tent.obj --to testdata/cages/tent_leaning.obj";
+
+/// Of points the smooth map between the cages is kept, and proved everywhere inside.
+#[test]
+fn the_map_of_points_is_kept_with_its_certificate() {
+    let folder = folder();
+    let line = format!("warp testdata/points/tent.csv {TENTS} -o moved.csv --map tent.homeo --json");
+    let report = folder.line(&line).expect(0).json();
+    let certificate = &report["certificate"];
+    assert_eq!((&certificate["holds"], &certificate["kind"]), (&true.into(), &"composite-cage".into()));
+    assert_eq!((&report["steps"], &report["checked"]["holds"]), (&1.into(), &false.into()));
+    folder.line(&format!("warp testdata/points/tent.csv {TENTS} -o plain.csv")).expect(0);
+    assert_eq!(folder.read("moved.csv"), folder.read("plain.csv"));
+    let verified = folder.line("verify tent.homeo --source testdata/cages/tent.obj --json").expect(0).json();
+    assert_eq!((&verified["input"]["vertices"], &verified["input"]["triangles"]), (&5.into(), &6.into()));
+    folder.line("verify tent.homeo --source testdata/cages/tent_leaning.obj").expect(3);
+    let run = folder.line("eval tent.homeo --points moved.csv").expect(3);
+    assert!(run.stderr.contains("between cages"), "{}", run.stderr);
+}
+
+/// An apex that is pressed through the base of a cage that is not convex: more steps do not help within the limit.
+#[test]
+fn a_map_of_points_that_folds_is_refused() {
+    let folder = folder();
+    let dart = |top: f64| {
+        format!(
+            "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 {top}\nv 0 0 -1.5\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 2 1 6\nf 3 2 6\nf 4 3 6\nf 1 4 6\n"
+        )
+    };
+    folder.write("before.obj", dart(0.5)).write("after.obj", dart(-1.2));
+    folder.write("points.csv", "x,y,z\n0,0,0\n0.1,0.2,-0.3\n");
+    let line = "warp points.csv --from before.obj --to after.obj -o moved.csv --map m.homeo --most-steps 2 --json";
+    let report = folder.line(line).expect(4).json();
+    assert_eq!((&report["error"]["code"], &report["witness"]["rule"]), (&"refuted".into(), &"Q3".into()));
+    assert_eq!((&report["steps"], report["witness"]["points"].as_array().unwrap().len()), (&2.into(), 1));
+    folder.write("outside.csv", "x,y,z\n0,0,0\n3,0,0\n0,0,9\n");
+    let line = line.replace("points.csv", "outside.csv");
+    let report = folder.line(&line).expect(3).json();
+    assert_eq!((&report["error"]["code"], &report["row"]), (&"outside".into(), &2.into()));
+    assert_eq!(report["rows_without_image"], 2);
+    assert!(!folder.path("moved.csv").exists() && !folder.path("m.homeo").exists());
+    folder.line(&format!("warp testdata/points/star.csv {TENTS} --map m.homeo")).expect(3);
 }
 
 /// The rows of a table, as rationals.

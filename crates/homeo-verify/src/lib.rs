@@ -257,7 +257,7 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
     }
     let planar = match &map.data {
         MapData::Harmonic(data) => Some((data.ring_sizes.len(), String::new(), LINEAR)),
-        MapData::Composite(data) => Some((data.ring_sizes.len(), format!("in {} steps ", data.tilings.len()), LINEAR)),
+        MapData::Composite(data) => Some((data.ring_sizes.len(), format!("{} ", in_steps(data.tilings.len())), LINEAR)),
         MapData::Complex(data) => {
             Some((data.ring_sizes.len(), String::new(), "runs along every edge at its stored speed"))
         }
@@ -295,9 +295,9 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
     }
     if let MapData::Cages(later) = &map.data {
         statement = format!(
-            "The stored map is a homeomorphism in {} steps from the inside of the cage of {vertices} vertices and {cells} triangles \
+            "The stored map is a homeomorphism {} from the inside of the cage of {vertices} vertices and {cells} triangles \
              onto that of the {onto}; it is linear on every triangle ({theorem}).",
-            later.len()
+            in_steps(later.len())
         );
         overlaps = "Nothing is said of how much it distorts.";
     }
@@ -330,6 +330,10 @@ fn check_map(map: &MapFile) -> Checked<Claim> {
         source_sha256: map.manifest.source.content_sha256.clone(),
         limits: limits.map(str::to_owned).to_vec(),
     })
+}
+
+fn in_steps(count: usize) -> String {
+    if count == 1 { "in one step".to_owned() } else { format!("in {count} steps") }
 }
 
 /// Applies every rule and counts what was checked.

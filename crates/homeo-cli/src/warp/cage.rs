@@ -76,6 +76,20 @@ pub fn run(session: &Session, options: &WarpArgs, outputs: &mut Outputs) -> Resu
     finish(session, options, input, done, claim, outputs)
 }
 
+/// The map is proved for the inside of the cage.
+fn refuse_points_outside(cages: &CagePair, input: &Input, path: &Path) -> Result<()> {
+    let outside: Vec<usize> =
+        (0..).zip(input.positions()).filter(|(_, at)| !cages.contains(**at)).map(|(number, _)| number).collect();
+    let Some(first) = outside.first() else { return Ok(()) };
+    let others = if outside.len() > 1 { format!(", as are {} others", outside.len() - 1) } else { String::new() };
+    let message = format!(
+        "{}: row {} is outside of the cage{others}: the map that --map keeps is one of its inside",
+        path.display(),
+        first + 1
+    );
+    Err(Failure::input("outside", message).with("row", first + 1).with("rows_without_image", outside.len()))
+}
+
 /// Points move by the map between the insides of the cages, which is kept: in as many steps as its certificate takes.
 fn run_points(
     session: &Session,
@@ -85,6 +99,7 @@ fn run_points(
     (steps, kept): (Steps, &Path),
     outputs: &mut Outputs,
 ) -> Result<Answer> {
+    refuse_points_outside(cages, &input, &options.input)?;
     let mut count = steps.first;
     let (map, bytes, claim) = loop {
         let map = CageMap::along(cages, path, count).map_err(|error| explain(session, &error))?;
@@ -295,7 +310,9 @@ fn finish(
     }
     lines.add("moved", &moved);
     let is_judged = done.verdict != Verdict::NothingToJudge;
-    lines.add("checked", if is_judged { checked } else { "nothing: points make no mesh that could fold" });
+    if is_judged || claim.is_none() {
+        lines.add("checked", if is_judged { checked } else { "nothing: points make no mesh that could fold" });
+    }
     lines.add("steps", done.steps);
     if let Some(time) = done.crossing_cage {
         lines.add("cages", format!("the one at time {time} meets itself; the check of the mesh does not rest on it"));

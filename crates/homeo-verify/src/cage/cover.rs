@@ -10,6 +10,7 @@ use super::determinant::{Enclosure, Fit, Frame};
 use super::inside::is_inside;
 use super::jet::{cross, dot, minus};
 use super::outline::{Outline, Point};
+use crate::parallel::in_parallel;
 use std::collections::VecDeque;
 
 /// So far along an edge its charts go from either end, in parts of it: beyond the middle, so that they overlap.
@@ -165,16 +166,18 @@ impl<'a> Cover<'a> {
         })
     }
 
-    /// A point in the middle of one of the cells that are begun with, inside, at which the determinant is negative.
+    /// The first of some points at which the determinant is negative: middles of cells, and near edges and vertices, where a
+    /// map folds first.
     pub fn sampled_fold(&self) -> Option<Point> {
-        let frame = Frame::new(self.outline, Chart::Open);
-        let open = self.cells().into_iter().filter(|(chart, _)| matches!(chart, Chart::Open));
-        let points = open.map(|(_, cell)| cell.map(|[low, high]| [0.5 * low + 0.5 * high; 2]));
-        let folds = |point: &Cell| {
-            let is_negative = |found: Enclosure| found.determinant.is_negative();
-            self.side(&frame, point) == Some(true) && frame.enclose(point, &Fit::IDENTITY).is_some_and(is_negative)
+        let fold = |(chart, cell): &(Chart, Cell)| {
+            let frame = Frame::new(self.outline, *chart);
+            let folds = |at: &Cell| {
+                let is_negative = |found: Enclosure| found.determinant.is_negative();
+                self.side(&frame, at) == Some(true) && frame.enclose(at, &Fit::IDENTITY).is_some_and(is_negative)
+            };
+            samples(*chart, cell).iter().find(|at| folds(at)).map(|at| self.middle(*chart, at))
         };
-        points.into_iter().find(folds).map(|point| point.map(|[x, _]| x))
+        in_parallel(&self.cells(), fold).into_iter().flatten().next()
     }
 
     /// The side on which a cell that no face meets lies; none if that is not clear.
@@ -244,6 +247,24 @@ impl<'a> Cover<'a> {
     fn side(&self, frame: &Frame, cell: &Cell) -> Option<bool> {
         if frame.is_clear(cell) { self.is_inside(frame.chart, cell) } else { None }
     }
+}
+
+/// Some points of a cell that is begun with.
+fn samples(chart: Chart, cell: &Cell) -> Vec<Cell> {
+    let counts = match chart {
+        Chart::Open => [1; 3],
+        Chart::Vertex { .. } => [1, 4, 4],
+        Chart::Edge { .. } => [3, 1, 4],
+    };
+    let at = |axis: usize, number: usize| {
+        let [low, high] = cell[axis];
+        // What vanishes at the end of the chart is small.
+        let is_small = counts[axis] == 1 && !matches!(chart, Chart::Open);
+        let part = if is_small { 0.1 } else { (number as f64 + 0.5) / counts[axis] as f64 };
+        [low + part * (high - low); 2]
+    };
+    let numbers = (0..counts[0]).flat_map(|i| (0..counts[1]).flat_map(move |j| (0..counts[2]).map(move |k| [i, j, k])));
+    numbers.map(|numbers| [0, 1, 2].map(|axis| at(axis, numbers[axis]))).collect()
 }
 
 /// How much the determinant bends along each parameter: what is not known of it on a line through the middle grows with

@@ -50,9 +50,15 @@ pub(crate) fn check_cages(map: &MapFile, later: &[Vec<Point>]) -> Checked<Vec<(&
         placement.drawn(check_signs(&complex, &placement).and_then(|_| skin.check(&placement)))?;
     }
     let triangles: Vec<[u32; 3]> = complex.cells().map(|cell| [cell[0], cell[1], cell[2]]).collect();
+    let steps: Vec<Outline> = stages.windows(2).map(|pair| Outline::new(pair[0], pair[1], &triangles)).collect();
+    let covers: Vec<Cover> = steps.iter().map(Cover::new).collect();
+    // What folds a lot shows at once; else all steps before it would be bounded first.
+    for (number, cover) in covers.iter().enumerate() {
+        cover.sampled_fold().map_or(Ok(()), |at| fold(number, at))?;
+    }
     let mut count = 0;
-    for (number, pair) in stages.windows(2).enumerate() {
-        count += check_step(number, &Outline::new(pair[0], pair[1], &triangles))?;
+    for (number, cover) in covers.iter().enumerate() {
+        count += check_step(number, cover)?;
     }
     Ok(vec![
         ("source vertices, finite in every cage (rule Q1)", map.positions.len() as u64),
@@ -80,17 +86,13 @@ fn check_surface(complex: &Complex) -> Checked {
     Ok(())
 }
 
+fn fold(step: usize, at: Point) -> Checked {
+    let message = format!("the mean value map of step {step} folds round the point {at:?}");
+    Err(refuted_at("Q3", message, at))
+}
+
 /// Q3: the determinant of the map of a step is positive inside. Counts the cells.
-fn check_step(number: usize, outline: &Outline) -> Checked<u64> {
-    let cover = Cover::new(outline);
-    let fold = |at: Point| {
-        let message = format!("the mean value map of step {number} folds round the point {at:?}");
-        Err(refuted_at("Q3", message, at))
-    };
-    // What folds a lot shows at once; else all other cells would be bounded first.
-    if let Some(at) = cover.sampled_fold() {
-        return fold(at);
-    }
+fn check_step(number: usize, cover: &Cover) -> Checked<u64> {
     let cells: Vec<(Chart, Cell)> = cover.cells();
     let (mut count, failed) = (0, AtomicUsize::new(usize::MAX));
     // The first cell that fails is the answer: none after one that has failed matters.
@@ -109,7 +111,7 @@ fn check_step(number: usize, outline: &Outline) -> Checked<u64> {
         for outcome in in_parallel(chunk, bound_unless_failed).into_iter().flatten() {
             match outcome {
                 Outcome::Positive(more) => count += more,
-                Outcome::Negative(at) => return fold(at),
+                Outcome::Negative(at) => return fold(number, at).map(|()| count),
                 Outcome::Undecided(at) => {
                     return Err(Stop::Undecided(Obstacle {
                         message: format!(

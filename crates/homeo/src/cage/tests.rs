@@ -145,6 +145,27 @@ fn sound_meshes_cover_no_point_twice() {
     assert!(sound >= 10 && folded >= 20 && doubled >= 10, "{sound} sound, {folded} folded, {doubled} doubled");
 }
 
+/// A hollow cage; many points are on it, on planes of its faces or on lines of its edges.
+#[test]
+fn points_are_inside_of_a_cage_or_not() {
+    let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]];
+    let corners =
+        vec![[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [-2.0, 0.0, 0.0], [0.0, -2.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, -2.0]];
+    let cages = CagePair::new(corners.clone(), corners.clone(), triangles).unwrap();
+    let is_in = |q: Point3| {
+        // Between two pyramids, closed.
+        let below = |apex: f64| apex + 0.5 * -apex * (q[0].abs() + q[1].abs());
+        q[0].abs() + q[1].abs() <= 2.0 && below(-2.0) <= q[2] && q[2] <= below(-1.0)
+    };
+    let steps = || (-10..=10).map(|k| 0.25 * f64::from(k));
+    let mut counts = [0; 2];
+    for q in steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z]))) {
+        assert_eq!(cages.contains(q), is_in(q), "{q:?}");
+        counts[usize::from(is_in(q))] += 1;
+    }
+    assert!(counts[1] > 200, "{counts:?}");
+}
+
 /// Whether a point is inside, of tetrahedra of either sign.
 fn contains([a, b, c, d]: [Point3; 4], q: Point3) -> bool {
     let signs = [orient3d(q, b, c, d), orient3d(a, q, c, d), orient3d(a, b, q, d), orient3d(a, b, c, q)];
