@@ -2,9 +2,12 @@
 //!
 //! A *cage* is a closed triangle mesh; when its vertices move, every point `x` moves by `sum phi_i(x) u_i`, with mean value
 //! coordinates `phi` and the displacements `u` of the vertices ([`deform`]). No such map is injective for every pair of
-//! cages, in one step or in many. So nothing is claimed of the map: the *moved mesh* is judged, exactly on the
-//! stored numbers ([`judge`]). Of a tetrahedral mesh it is decided whether the piecewise linear map from the mesh to
-//! the moved mesh is a homeomorphism; of a surface whether it meets itself. `docs/theory/cages.md` has the theorem.
+//! cages, in one step or in many. So the *moved mesh* is judged, exactly on the stored numbers ([`judge`]): of a
+//! tetrahedral mesh it is decided whether the piecewise linear map from the mesh to the moved mesh is a homeomorphism; of a
+//! surface whether it meets itself. `docs/theory/cages.md` has the theorem.
+//!
+//! The smooth map between two cages is a [`CageMap`]; written to a file
+//! ([`write_cages`](crate::certificate::write_cages)) it is proved or refuted by the independent checker.
 //!
 //! [`harmonic_extension`] moves the inside of a tetrahedral mesh when its boundary is given.
 //!
