@@ -208,7 +208,7 @@ pub fn open_certified(session: &Session, path: &Path) -> Result<(StoredMap, Clai
     let claim = certified(session, path, &bytes)?;
     session.stage("prepare");
     let map = read_map(&bytes).map_err(|error| match error {
-        MapFileError::NoMap | MapFileError::OfCages => Failure::input("no-map", format!("{}: {error}", path.display())),
+        MapFileError::NoMap => Failure::input("no-map", format!("{}: {error}", path.display())),
         _ => Failure::input("unreadable-map", format!("{}: {error}", path.display())),
     })?;
     session.fact("input", map_json(&map, path));
@@ -225,6 +225,9 @@ pub fn map_json(map: &StoredMap, path: &Path) -> Value {
         StoredMap::Planar(map) => domain_json(map.as_bijection().source(), path),
         StoredMap::Moved(MovedMap::Surface(map)) => source_json(map.source(), path),
         StoredMap::Moved(MovedMap::Volume(map)) => source_json(map.source(), path),
+        StoredMap::Cages(map) => json!({
+            "path": path.display().to_string(), "vertices": map.stages()[0].len(), "triangles": map.triangles().len(),
+        }),
     }
 }
 

@@ -57,6 +57,13 @@ pub fn run(session: &Session, options: &ReportArgs, outputs: &mut Outputs) -> Re
             };
             (title, size)
         }
+        StoredMap::Cages(_) => {
+            let message = format!(
+                "{} is a map between cages, which has no page: `homeo eval` moves points by it, `homeo verify` says what is proved",
+                options.map.display()
+            );
+            return Err(Failure::input("wrong-kind", message));
+        }
         StoredMap::Moved(_) => {
             let message = format!(
                 "{} is a mesh that has moved: the mesh before and what `homeo warp -o` writes are ordinary meshes, which any viewer \

@@ -173,6 +173,14 @@ fn the_map_of_a_mesh_is_kept_with_its_certificate() {
 
 const TENTS: &str = "--from testdata/cages/tent.obj --to testdata/cages/tent_leaning.obj";
 
+fn doubles(text: &str) -> Vec<[f64; 3]> {
+    let row = |line: &str| {
+        let mut numbers = line.split(',').map(|x| x.parse().unwrap());
+        [(); 3].map(|()| numbers.next().unwrap())
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
 /// Of points the smooth map between the cages is kept, and proved everywhere inside.
 #[test]
 fn the_map_of_points_is_kept_with_its_certificate() {
@@ -187,8 +195,23 @@ fn the_map_of_points_is_kept_with_its_certificate() {
     let verified = folder.line("verify tent.homeo --source testdata/cages/tent.obj --json").expect(0).json();
     assert_eq!((&verified["input"]["vertices"], &verified["input"]["triangles"]), (&5.into(), &6.into()));
     folder.line("verify tent.homeo --source testdata/cages/tent_leaning.obj").expect(3);
-    let run = folder.line("eval tent.homeo --points moved.csv").expect(3);
-    assert!(run.stderr.contains("between cages"), "{}", run.stderr);
+    // There and back, with bounds; the last point is on the base and stays there.
+    let eval = "eval tent.homeo --points testdata/points/tent.csv -o images.csv --json";
+    let report = folder.line(eval).expect(0).json();
+    assert!(report["error"]["max_radius"].as_f64().unwrap() < 1e-10, "{report}");
+    let near = |a: &str, b: &str| {
+        let rows = |name: &str| doubles(&folder.text(name));
+        rows(a).iter().zip(rows(b)).all(|(p, q)| (0..3).all(|k| (p[k] - q[k]).abs() < 1e-9))
+    };
+    assert!(near("images.csv", "moved.csv"));
+    folder.line("eval tent.homeo --points images.csv --inverse -o back.csv").expect(0);
+    assert!(near("back.csv", "testdata/points/tent.csv"));
+    let run = folder.line("eval tent.homeo --points testdata/points/tent.csv --exact").expect(3);
+    assert!(run.stderr.contains("leave out"), "{}", run.stderr);
+    folder.write("far.csv", "x,y,z\n0,0,0\n0,0,9\n");
+    let run = folder.line("eval tent.homeo --points far.csv").expect(3);
+    assert!(run.stderr.contains("row 2") && run.stderr.contains("outside the source cage"), "{}", run.stderr);
+    folder.line("report tent.homeo -o page.html").expect(3);
 }
 
 /// An apex that is pressed through the base of a cage that is not convex: more steps do not help within the limit.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use homeo::cage::{CageEvaluationError, CageEvaluator};
 use homeo::certificate::{PlanarMap, StoredMap};
 use homeo::map::{
     Bijection, Enclosed, Enclosed2, EvaluationError, HarmonicMap, PlanarEvaluationError, Shell, ShellEvaluationError,
@@ -23,6 +24,7 @@ pub enum NoImage {
     Map(EvaluationError),
     Shell(ShellEvaluationError),
     Planar(PlanarEvaluationError),
+    Cages(CageEvaluationError),
     /// It has one that is no rational number.
     NotRational,
 }
@@ -40,6 +42,7 @@ impl fmt::Display for NoImage {
             Self::Map(error) => error.fmt(formatter),
             Self::Shell(error) => error.fmt(formatter),
             Self::Planar(error) => error.fmt(formatter),
+            Self::Cages(error) => error.fmt(formatter),
             Self::NotRational => formatter.write_str("the image is not rational"),
         }
     }
@@ -60,6 +63,14 @@ pub fn floating(map: &StoredMap, direction: Direction, points: &[[f64; 3]]) -> V
             points.par_iter().map(|point| one(point).map_err(NoImage::Shell)).collect()
         }
         StoredMap::Moved(map) => floating_in_map(map.as_bijection(), direction, points),
+        StoredMap::Cages(map) => {
+            let evaluator = CageEvaluator::new(map);
+            let one = |&point: &[f64; 3]| match direction {
+                Direction::Forward => evaluator.forward(point),
+                Direction::Inverse => evaluator.inverse(point),
+            };
+            points.par_iter().map(|point| one(point).map_err(NoImage::Cages)).collect()
+        }
         StoredMap::Planar(map) => {
             let map = map.as_bijection();
             let one = |&[x, y, _]: &[f64; 3]| match direction {
@@ -79,7 +90,9 @@ pub fn exact(map: &StoredMap, direction: Direction, points: &[[Rational; 3]]) ->
         StoredMap::Moved(map) => exact_in_map(map.as_bijection(), direction, point).map_err(NoImage::Map),
         StoredMap::Shell(shell) => exact_in_shell(shell, direction, point).map_err(NoImage::Shell),
         StoredMap::Planar(PlanarMap::Harmonic(map)) => exact_in_plane(map, direction, point).map_err(NoImage::Planar),
-        StoredMap::Planar(PlanarMap::Composite(_) | PlanarMap::Complex(_)) => Err(NoImage::NotRational),
+        StoredMap::Planar(PlanarMap::Composite(_) | PlanarMap::Complex(_)) | StoredMap::Cages(_) => {
+            Err(NoImage::NotRational)
+        }
     };
     points.par_iter().map(one).collect()
 }

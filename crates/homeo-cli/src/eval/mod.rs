@@ -110,7 +110,7 @@ fn floating(session: &Session, options: &EvalArgs, map: &StoredMap, format: Poin
 }
 
 fn exact(session: &Session, options: &EvalArgs, map: &StoredMap) -> Result<Done> {
-    if let StoredMap::Planar(PlanarMap::Composite(_) | PlanarMap::Complex(_)) = map {
+    if let StoredMap::Planar(PlanarMap::Composite(_) | PlanarMap::Complex(_)) | StoredMap::Cages(_) = map {
         let message = "composite mean value maps and complex maps take rational points to others that are not: leave out \
                        --exact for images with a bound of their error";
         return Err(Failure::input("no-exact-images", message));
@@ -154,6 +154,7 @@ fn check_columns(
         StoredMap::Shell(_) => ("shell", 3, false),
         StoredMap::Planar(_) => ("polygon", 2, true),
         StoredMap::Moved(_) => ("moved mesh", 3, false),
+        StoredMap::Cages(_) => ("cage", 3, false),
     };
     if dimension == 2 && (options.inverse || matches!(map, StoredMap::Planar(_))) {
         return match (0..rows).find(|&row| !is_planar(row)) {

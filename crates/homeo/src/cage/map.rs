@@ -8,6 +8,23 @@ use crate::shape::PolyhedronPath;
 
 type Point3 = [f64; 3];
 
+/// Why cages make no map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum StagesError {
+    /// Two are needed, a source and a target.
+    #[error("{0} cages were given; a map has two or more")]
+    Few(usize),
+    /// A cage has another number of vertices than the first.
+    #[error("cage {0} has another number of vertices than the first")]
+    OtherVertices(usize),
+    /// A vertex of a cage is not finite.
+    #[error("a vertex of cage {0} is not finite")]
+    NotFinite(usize),
+    /// A triangle has a vertex that does not exist.
+    #[error("triangle {0} has a vertex that does not exist")]
+    NoVertex(usize),
+}
+
 /// A composite mean value map: from a cage to the next along a path, in steps.
 ///
 /// # Guarantee
@@ -48,6 +65,29 @@ impl CageMap {
         }
         stages.push(cages.target().to_vec());
         Ok(Self { triangles: cages.triangles().to_vec(), stages })
+    }
+
+    /// By cages (#V by 3 each) that are known already, with the same triangles (#F by 3). That it is one-to-one is not proved
+    /// here: a certificate says so.
+    ///
+    /// # Errors
+    /// When there are fewer than two cages, they have different numbers of vertices, coordinates are not finite, or triangles name
+    /// vertices that do not exist.
+    pub fn from_stages(stages: Vec<Vec<Point3>>, triangles: Vec<[u32; 3]>) -> Result<Self, StagesError> {
+        let count = stages.first().map_or(0, Vec::len);
+        if stages.len() < 2 {
+            return Err(StagesError::Few(stages.len()));
+        }
+        if let Some(number) = stages.iter().position(|stage| stage.len() != count) {
+            return Err(StagesError::OtherVertices(number));
+        }
+        if let Some(number) = stages.iter().position(|stage| !stage.as_flattened().iter().all(|x| x.is_finite())) {
+            return Err(StagesError::NotFinite(number));
+        }
+        match triangles.iter().position(|triangle| triangle.iter().any(|&v| v as usize >= count)) {
+            Some(triangle) => Err(StagesError::NoVertex(triangle)),
+            None => Ok(Self { triangles, stages }),
+        }
     }
 
     /// The triangles of all cages, #F by 3: counter-clockwise or clockwise from outside, as they were given.

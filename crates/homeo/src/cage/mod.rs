@@ -7,7 +7,8 @@
 //! surface whether it meets itself. `docs/theory/cages.md` has the theorem.
 //!
 //! The smooth map between two cages is a [`CageMap`]; written to a file
-//! ([`write_cages`](crate::certificate::write_cages)) it is proved or refuted by the independent checker.
+//! ([`write_cages`](crate::certificate::write_cages)) it is proved or refuted by the independent checker, and
+//! evaluated both ways with bounds of the errors by a [`CageEvaluator`].
 //!
 //! [`harmonic_extension`] moves the inside of a tetrahedral mesh when its boundary is given.
 //!
@@ -31,7 +32,10 @@
 //! ```
 
 mod deform;
+mod enclosure;
+mod evaluate;
 mod harmonic;
+mod inside;
 mod map;
 mod pair;
 #[cfg(test)]
@@ -39,7 +43,8 @@ mod tests;
 mod verdict;
 
 pub use deform::{DeformError, Deformed, Steps, deform};
+pub use evaluate::{CageEvaluationError, CageEvaluator};
 pub use harmonic::{ExtensionError, harmonic_extension};
-pub use map::CageMap;
+pub use map::{CageMap, StagesError};
 pub use pair::{CageError, CagePair, CageSide};
 pub use verdict::{Moved, Verdict, judge};

@@ -1,9 +1,9 @@
 //! Two cages with corresponding vertices.
 
 use homeo_core::mesh::TriangleComplex;
-use homeo_core::predicate::{Sign, orient2d, orient3d, segment_meets_triangle};
 use homeo_core::topology::{Intersections, Options, Severity, Violation, analyse_triangles};
 
+use super::inside::contains;
 use crate::coordinates::{MeanValuePolyhedron, PolyhedronError};
 
 type Point3 = [f64; 3];
@@ -133,24 +133,8 @@ impl CagePair {
     /// # Ok::<(), homeo::cage::CageError>(())
     /// ```
     pub fn contains(&self, point: Point3) -> bool {
-        let corners = || self.triangles.iter().map(|triangle| triangle.map(|v| self.source[v as usize]));
-        corners().any(|triangle| segment_meets_triangle([point; 2], triangle))
-            || corners().filter(|&triangle| is_above(triangle, point)).count() % 2 == 1
+        contains(&self.source, &self.triangles, point)
     }
-}
-
-/// Whether a triangle is above a point that is not on it. The point counts as moved a little in `x` and less in `y`, so
-/// that no line up from it meets an edge.
-fn is_above([a, b, c]: [Point3; 3], point: Point3) -> bool {
-    let flat = |p: Point3| [p[0], p[1]];
-    let is_left_of = |p: Point3, q: Point3| {
-        let [low, high] = if p[1] <= q[1] { [p, q] } else { [q, p] };
-        low[1] <= point[1] && point[1] < high[1] && orient2d(flat(low), flat(high), flat(point)) == Sign::Positive
-    };
-    let sides = [[a, b], [b, c], [c, a]];
-    // Counter-clockwise from above, a triangle is above what it sees from behind.
-    sides.into_iter().filter(|&[p, q]| is_left_of(p, q)).count() % 2 == 1
-        && orient3d(a, b, c, point) != orient2d(flat(a), flat(b), flat(c))
 }
 
 fn check(side: CageSide, vertices: &[Point3], triangles: &[[u32; 3]]) -> Result<(), CageError> {

@@ -19,6 +19,7 @@ pub use write::{
 
 use homeo_core::number::Rational;
 
+use crate::cage::CageMap;
 use crate::complex::ComplexMap;
 use crate::composite::CompositeMap;
 use crate::map::{
@@ -37,6 +38,8 @@ pub enum StoredMap {
     Planar(PlanarMap),
     /// A mesh in space that has moved.
     Moved(MovedMap),
+    /// A map between the insides of cages.
+    Cages(CageMap),
 }
 
 /// A map between planar domains.

@@ -12,6 +12,7 @@ use zip::{CompressionMethod, ZipArchive};
 
 use super::npy::decode;
 use super::{FoliationMap, MovedMap, StoredMap};
+use crate::cage::CageMap;
 use crate::complex::{ComplexMap, EdgeSpeeds};
 use crate::composite::{CompositeMap, Tiling};
 use crate::input::SourceMesh;
@@ -36,11 +37,6 @@ pub enum MapFileError {
          `homeo hyperbolic` makes one"
     )]
     NoMap,
-    /// A map between cages.
-    #[error(
-        "this file holds a map between cages, which `homeo verify` checks; points move by it with `homeo warp`, from the cages"
-    )]
-    OfCages,
     /// An array is missing or has another type or shape.
     #[error("array {name} {what}")]
     Array {
@@ -111,7 +107,10 @@ pub fn read_map(bytes: &[u8]) -> Result<StoredMap, MapFileError> {
             _ => Err(MapFileError::Manifest("a mesh that has moved has dimension 2 or 3".to_owned())),
         },
         "hyperbolic" => Err(MapFileError::NoMap),
-        "composite-cage" => Err(MapFileError::OfCages),
+        "composite-cage" => {
+            is_of_dimension(&text("target"), 2)?;
+            Ok(StoredMap::Cages(file.cages()?))
+        }
         other => Err(MapFileError::Manifest(format!("maps of kind `{other}` are not known"))),
     }
 }
@@ -358,6 +357,17 @@ impl<'b> File<'b> {
     fn moved<const K: usize>(&mut self) -> Result<MovedMesh<K>, MapFileError> {
         let (source, after) = (self.source::<K>()?, self.points("target_positions")?);
         MovedMesh::new(source, after).map_err(|e| MapFileError::Inconsistent(e.to_string()))
+    }
+
+    fn cages(&mut self) -> Result<CageMap, MapFileError> {
+        let source = self.source::<3>()?;
+        let (first, later) = (source.positions(), self.points("stage_positions")?);
+        if first.is_empty() || !later.len().is_multiple_of(first.len()) {
+            return inconsistent("stage_positions has no cages of as many vertices as the source");
+        }
+        let stages = first.chunks(first.len()).chain(later.chunks(first.len())).map(<[_]>::to_vec).collect();
+        let triangles = source.complex().cells().iter().map(|cell| cell.map(VertexId::raw)).collect();
+        CageMap::from_stages(stages, triangles).map_err(|e| MapFileError::Inconsistent(e.to_string()))
     }
 
     fn shell(&mut self, target: &str) -> Result<Shell, MapFileError> {

@@ -3,7 +3,8 @@
 use std::io::{Cursor, Read, Write};
 use std::panic::catch_unwind;
 
-use homeo::certificate::{FoliationMap, PlanarMap, StoredMap, read_map};
+use homeo::cage::{CageEvaluator, CageMap};
+use homeo::certificate::{FoliationMap, PlanarMap, Provenance, StoredMap, read_map, write_cages};
 use homeo::map::{Bijection, Foliation, Target};
 use homeo_verify::verify_bytes;
 use zip::write::SimpleFileOptions;
@@ -84,6 +85,10 @@ fn ask(map: &StoredMap) {
                 let _ = (map.forward(point), map.inverse(point));
                 let _ = (map.forward_exact(&exact), map.inverse_exact(&exact));
             }
+            StoredMap::Cages(map) => {
+                let evaluator = CageEvaluator::new(map);
+                let _ = (evaluator.forward(point), evaluator.inverse(point), evaluator.jacobian(point));
+            }
             StoredMap::Planar(planar) => {
                 let ([x, y, _], [u, v, _]) = (point, exact);
                 let map = planar.as_bijection();
@@ -155,6 +160,35 @@ fn damaged_bytes_are_refused_or_harmless() {
         bytes
     });
     assert!(outcomes.panics.is_empty(), "panics: {:?}", outcomes.panics);
+}
+
+/// Two steps between tetrahedra that hold the points asked for.
+fn cages_file() -> Vec<u8> {
+    let stage = |top: f64| vec![[-1.0, -1.0, -1.0], [5.0, -1.0, -1.0], [-1.0, 5.0, -1.0], [-1.0, -1.0, top]];
+    let stages = [5.0, 4.0, 6.0].map(stage).to_vec();
+    let map = CageMap::from_stages(stages, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).expect("cages");
+    let mut file = Cursor::new(Vec::new());
+    write_cages(&map, &Provenance::default(), &mut file).expect("in memory");
+    file.into_inner()
+}
+
+/// The proof of such a map takes long, so the checker is asked of some only.
+#[test]
+fn damaged_maps_between_cages_are_refused_or_harmless() {
+    let (original, mut random, mut readable) = (cages_file(), Random::new(19), 0);
+    ask(&read_map(&original).expect("a map"));
+    for round in 0..2000 {
+        let mut entries = unpacked(&original);
+        let at = random.below(entries.len() as u64) as usize;
+        mutate(&mut entries[at].1, &mut random);
+        let bytes = packed(&entries);
+        let answer = catch_unwind(|| {
+            let _ = (round % 100 == 0).then(|| verify_bytes(&bytes));
+            read_map(&bytes).map(|map| ask(&map)).is_ok()
+        });
+        readable += usize::from(answer.unwrap_or_else(|_| panic!("round {round} panics")));
+    }
+    assert!(readable > 200, "only {readable} damaged files could be read: the test tests little");
 }
 
 /// Behind the checksums: numbers that do not fit together.
