@@ -66,7 +66,7 @@ fn flaw(map: &Map, samples: usize) -> Option<String> {
         if !points.as_flattened().iter().all(|x| x.is_finite()) || !is_injective(&rows(points), &map.source_cells) {
             return Some(format!("cage {number} meets itself"));
         }
-        let volume: f64 = triangles.iter().map(|t| spatial::volume(t.map(|v| points[v as usize]))).sum();
+        let volume: f64 = triangles.iter().map(|t| volume(t.map(|v| points[v as usize]))).sum();
         if volume <= 0.0 {
             return Some(format!("cage {number} is inside out"));
         }
@@ -85,6 +85,11 @@ fn flaw(map: &Map, samples: usize) -> Option<String> {
         }
     }
     None
+}
+
+/// Six times that of the tetrahedron of a triangle and the origin.
+fn volume([a, b, c]: [Place; 3]) -> f64 {
+    (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3])).sum()
 }
 
 fn folds(pair: &[Vec<Place>], triangles: &[[u32; 3]], at: Place) -> bool {

@@ -63,8 +63,3 @@ pub fn winding(points: &[Place], triangles: &[[u32; 3]], at: Place) -> f64 {
     };
     triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
-
-/// Six times the volume of the tetrahedron of a triangle and the origin.
-pub fn volume([a, b, c]: [Place; 3]) -> f64 {
-    dot(a, cross(b, c))
-}

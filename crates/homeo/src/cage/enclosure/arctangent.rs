@@ -54,7 +54,7 @@ pub(super) fn quotient(u: Form, other: Form) -> Form {
     let Some((at, deviation, low)) = place(middle) else { return Form::UNKNOWN };
     // Of the terms after the first the slopes are bounded only: they add up to less than these geometric sums.
     let share = apart.size() / (1.0 + low);
-    if !(share < 2.0 * NEAR) {
+    if share.is_nan() || share >= 2.0 * NEAR {
         return Form::UNKNOWN;
     }
     let sums = (1.0 - share * share).powi(-2);
