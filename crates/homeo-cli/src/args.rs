@@ -608,7 +608,7 @@ Polygons are JSON lists [[x, y], ...]; with a hole {\"outer\": [...], \"inner\":
 transparent. With --landmarks the map is affine on the triangles between them; landmarks whose triangles
 turn over would fold the picture and are refused by name. Cages are closed triangle meshes, and a mesh that moves with one is
 checked exactly; of points that move with --map the smooth map of all of the inside is proved, which takes seconds for
-ten triangles and minutes for fifty. The map's certificate is checked before anything is written; `homeo verify` checks it again.")]
+ten triangles and many minutes for fifty. The map's certificate is checked before anything is written; `homeo verify` checks it again.")]
 pub struct WarpArgs {
     /// A picture (PNG, JPEG; 8 or 16 bits, with opacity or without) or points of the plane (.csv, .npy); with cages a mesh or
     /// points in space

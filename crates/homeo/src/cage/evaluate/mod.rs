@@ -159,7 +159,11 @@ impl<'a> CageEvaluator<'a> {
         let mut at =
             [guess, image].into_iter().chain(self.centres(number)).find(|at| is_inside(at) && linear(*at).is_some())?;
         let (mut miss, mut derivative) = linear(at)?;
+        let rounding = 4.0 * f64::EPSILON * self.size(number + 1);
         for _ in 0..60 {
+            if norm(miss) < rounding {
+                break;
+            }
             let inverse = inverted(derivative)?;
             let way = [0, 1, 2].map(|k| (0..3).map(|l| inverse[k][l] * miss[l]).sum::<f64>());
             // Shorter and shorter, until it is an improvement inside.
