@@ -7,6 +7,12 @@ use crate::map::Enclosed;
 
 type Point3 = [f64; 3];
 
+/// Whether signs are decided exactly for a point: coordinates are zero or between `2^-300` and `2^300` in size.
+pub(super) fn is_fit(point: &Point3) -> bool {
+    let range = 2f64.powi(-300)..=2f64.powi(300);
+    point.iter().all(|x| *x == 0.0 || range.contains(&x.abs()))
+}
+
 /// Whether a point is inside of a closed mesh or on it.
 pub(super) fn contains(points: &[Point3], triangles: &[[u32; 3]], point: Point3) -> bool {
     let corners = || triangles.iter().map(|triangle| triangle.map(|v| points[v as usize]));

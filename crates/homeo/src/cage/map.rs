@@ -1,6 +1,7 @@
 //! Mean value maps between cages, one after the other.
 
 use super::deform::DeformError;
+use super::inside::is_fit;
 use super::pair::{CagePair, first_fault};
 use crate::coordinates::{MeanValuePolyhedron, SpatialCoordinates};
 use crate::progress::Progress;
@@ -17,8 +18,8 @@ pub enum StagesError {
     /// A cage has another number of vertices than the first.
     #[error("cage {0} has another number of vertices than the first")]
     OtherVertices(usize),
-    /// A vertex of a cage is not finite.
-    #[error("a vertex of cage {0} is not finite")]
+    /// A vertex of a cage has a coordinate that is neither zero nor between `2^-300` and `2^300` in size.
+    #[error("a vertex of cage {0} has a coordinate that is not finite, or too large or too small to decide signs")]
     NotFinite(usize),
     /// A triangle has a vertex that does not exist.
     #[error("triangle {0} has a vertex that does not exist")]
@@ -71,8 +72,8 @@ impl CageMap {
     /// here: a certificate says so.
     ///
     /// # Errors
-    /// When there are fewer than two cages, they have different numbers of vertices, coordinates are not finite, or triangles name
-    /// vertices that do not exist.
+    /// When there are fewer than two cages, they have different numbers of vertices, coordinates are not finite or of no
+    /// reasonable size, or triangles name vertices that do not exist.
     pub fn from_stages(stages: Vec<Vec<Point3>>, triangles: Vec<[u32; 3]>) -> Result<Self, StagesError> {
         let count = stages.first().map_or(0, Vec::len);
         if stages.len() < 2 {
@@ -81,7 +82,7 @@ impl CageMap {
         if let Some(number) = stages.iter().position(|stage| stage.len() != count) {
             return Err(StagesError::OtherVertices(number));
         }
-        if let Some(number) = stages.iter().position(|stage| !stage.as_flattened().iter().all(|x| x.is_finite())) {
+        if let Some(number) = stages.iter().position(|stage| !stage.iter().all(is_fit)) {
             return Err(StagesError::NotFinite(number));
         }
         match triangles.iter().position(|triangle| triangle.iter().any(|&v| v as usize >= count)) {

@@ -1,7 +1,7 @@
 //! Images and preimages under maps between cages, with bounds of their errors.
 
 use super::enclosure::{Form, Step};
-use super::inside::{along_triangle, contains};
+use super::inside::{along_triangle, contains, is_fit};
 use super::map::CageMap;
 use crate::map::Enclosed;
 
@@ -248,9 +248,7 @@ fn enclosed(at: &Region) -> Enclosed {
 }
 
 fn check_coordinates(point: Point3) -> Result<(), CageEvaluationError> {
-    let range = 2f64.powi(-300)..=2f64.powi(300);
-    let is_fit = point.iter().all(|x| *x == 0.0 || range.contains(&x.abs()));
-    if is_fit { Ok(()) } else { Err(CageEvaluationError::NotFinite) }
+    if is_fit(&point) { Ok(()) } else { Err(CageEvaluationError::NotFinite) }
 }
 
 fn inverted(m: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
