@@ -15,9 +15,12 @@ use std::time::{Duration, Instant};
 use homeo::certificate::{Provenance, write_composite};
 use homeo::composite::{CompositeMap, PartitionParams};
 use homeo::progress::Silent;
-use homeo::shape::{LengthsAndAngles, LinearPath, ShapePath, SimplePath, TurningPath, first_not_simple};
+use homeo::shape::first_not_simple;
 use homeo_core::planar::{DomainPair, read_pair};
 use homeo_verify::{Verdict, verify_bytes};
+use paths::paths;
+
+mod paths;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -91,28 +94,6 @@ fn row(path: &Path, params: &PartitionParams) -> Result<String, String> {
         }
     }
     Ok(format!("{count} | | | | | | | | | {} |", reasons.join("; ")))
-}
-
-type NamedPath = (&'static str, Box<dyn ShapePath>);
-
-/// The paths that are tried, in this order: a hole turns first.
-fn paths(pair: &DomainPair, turn: Option<f64>) -> Result<Vec<NamedPath>, String> {
-    let text = |error: homeo::shape::ShapeError| error.to_string();
-    let straight: Box<dyn ShapePath> = Box::new(LinearPath::between(pair).map_err(text)?);
-    let outer = TurningPath::between(pair, &[]).map_err(text)?.turns_in_degrees()[0];
-    let turning = TurningPath::between(pair, &[outer, outer + turn.unwrap_or(0.0)]).map_err(text)?;
-    let turning: Box<dyn ShapePath> = Box::new(turning);
-    let [source, target] = [&pair.source, &pair.target].map(|domain| domain.rings()[0].clone());
-    let simple = SimplePath::between(pair).map(|path| Box::new(path) as Box<dyn ShapePath>);
-    let simple = simple.into_iter().map(|path| ("simple", path));
-    Ok(match pair.source.rings().len() {
-        1 => {
-            let angles = LengthsAndAngles::new(source, target).map(|path| Box::new(path) as Box<dyn ShapePath>);
-            let angles = angles.into_iter().map(|path| ("angles", path));
-            angles.chain([("straight", straight), ("turning", turning)]).chain(simple).collect()
-        }
-        _ => vec![("turning", turning), ("straight", straight)],
-    })
 }
 
 /// What the checker says: boxes, seconds, verdict.

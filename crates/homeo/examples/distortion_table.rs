@@ -4,7 +4,7 @@
 //!
 //! Mean by area and maximum over the centroids of the source's triangles: of composite harmonic maps over a regular
 //! polygon, over one with averaged lengths, over one optimized for the figure that is shown, and of composite mean value
-//! maps where one is found within so many seconds (with 0 none is looked for).
+//! maps where one is found within so many seconds for each path (with 0 none is looked for).
 
 #![allow(clippy::print_stdout, reason = "a program")]
 
@@ -15,8 +15,11 @@ use homeo::composite::{CompositeMap, PartitionParams};
 use homeo::construct::harmonic::{HarmonicParams, MiddleShape, harmonic_map};
 use homeo::map::{Distortion, DistortionSummary, HarmonicMap};
 use homeo::progress::Silent;
-use homeo::shape::LinearPath;
+use homeo::shape::first_not_simple;
 use homeo_core::planar::{DomainPair, Point2, read_pair};
+use paths::paths;
+
+mod paths;
 
 const KINDS: [Distortion; 2] = [Distortion::Conformal, Distortion::Isometric];
 
@@ -31,12 +34,19 @@ fn centroids(map: &HarmonicMap) -> Vec<(Point2, f64)> {
     half.parts().triangles.iter().map(of).collect()
 }
 
-fn mean_value(pair: &DomainPair, points: &[(Point2, f64)], seconds: u64) -> Option<[DistortionSummary; 2]> {
+fn mean_value(
+    pair: &DomainPair,
+    turn: Option<f64>,
+    points: &[(Point2, f64)],
+    seconds: u64,
+) -> Option<[DistortionSummary; 2]> {
     if seconds == 0 {
         return None;
     }
     let params = PartitionParams { timeout: Some(Duration::from_secs(seconds)), ..PartitionParams::default() };
-    let (map, _) = CompositeMap::build(&LinearPath::between(pair).ok()?, &params, &Silent).ok()?;
+    let simple =
+        paths(pair, turn).ok()?.into_iter().filter(|(_, path)| matches!(first_not_simple(&**path, 64), Ok(None)));
+    let (map, _) = simple.map(|(_, path)| path).find_map(|path| CompositeMap::build(&*path, &params, &Silent).ok())?;
     let mut sums = [DistortionSummary { mean: 0.0, largest: 0.0 }; 2];
     let mut total = 0.0;
     for &(point, area) in points {
@@ -68,7 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             harmonic_map(&pair, params, &Silent)
         };
         let (regular, averaged) = (of(MiddleShape::Regular)?, of(MiddleShape::AveragedLengths)?);
-        let composite = mean_value(&pair, &centroids(&averaged), seconds);
+        let composite = mean_value(&pair, rings.turn_degrees, &centroids(&averaged), seconds);
         for (k, kind) in KINDS.into_iter().enumerate() {
             let start = Instant::now();
             let optimized = of(MiddleShape::Optimized(kind))?;
