@@ -110,6 +110,8 @@ fn maps_that_do_not_fold_are_certified() {
             Ok(Verdict::Certified(claim)) => {
                 assert_eq!((&claim.kind[..], &claim.target[..]), ("composite-cage", "polyhedron"), "{name}");
                 assert!(claim.checked.iter().all(|(_, n)| *n > 0), "{name}: {:?}", claim.checked);
+                let steps = if name == "two steps" { "in 2 steps" } else { "in one step" };
+                assert!(claim.statement.contains(steps), "{name}: {}", claim.statement);
             }
             other => panic!("{name}: {other:?}"),
         }

@@ -178,3 +178,88 @@ pub(in crate::cage) fn times(factor: Form, a: [Form; 3]) -> [Form; 3] {
 fn dot_of(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use homeo_core::number::Rational;
+
+    struct Random(u64);
+
+    impl Random {
+        /// In `[-1, 1]`, sometimes at the ends.
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let unit = (self.0 >> 11) as f64 / 2f64.powi(52) - 1.0;
+            if self.0 >> 60 < 4 { unit.signum() } else { unit }
+        }
+
+        fn form(&mut self) -> Form {
+            let (scale, width) =
+                (2f64.powi((20.0 * self.next()) as i32), 2f64.powi((20.0 * self.next() - 20.0) as i32));
+            let slopes = [(); 3].map(|()| scale * width * self.next());
+            Form { middle: scale * self.next(), slopes, radius: scale * width * width * self.next().abs() }
+        }
+    }
+
+    fn exact(x: f64) -> Rational {
+        Rational::from_f64(x).unwrap()
+    }
+
+    /// A number that a form stands for at a place.
+    fn value(form: Form, at: [f64; 3], share: f64) -> Rational {
+        let parts = (0..3).map(|k| exact(form.slopes[k]) * exact(at[k]));
+        parts.fold(exact(form.middle) + exact(form.radius) * exact(share), |sum, part| sum + part)
+    }
+
+    fn holds(form: Form, at: [f64; 3], number: &Rational, share: f64) -> bool {
+        *number >= value(form, at, -share) && *number <= value(form, at, share)
+    }
+
+    /// Exact values are in the forms of all operations; in forms with a hundredth of the radius they often are not.
+    #[test]
+    fn values_stay_in_their_forms() {
+        let mut random = Random(3);
+        let (mut known, mut outside) = ([0; 4], 0);
+        for _ in 0..3000 {
+            let (u, v) = (random.form(), random.form());
+            let at = [(); 3].map(|()| random.next());
+            let [x, y] = [u, v].map(|form| value(form, at, random.next()));
+            let mut cases =
+                vec![(u + v, x.clone() + y.clone()), (u - v, x.clone() - y.clone()), (u * v, x.clone() * y.clone())];
+            if !x.is_zero() {
+                cases.push((u.inverse(), exact(1.0) / x));
+            }
+            for (k, (form, number)) in cases.into_iter().enumerate().filter(|(_, (form, _))| form.radius.is_finite()) {
+                assert!(holds(form, at, &number, 1.0), "operation {k}: {u:?} {v:?} {at:?}");
+                known[k] += 1;
+                outside += usize::from(!holds(form, at, &number, 0.01));
+            }
+        }
+        assert!(known.iter().all(|&count| count > 1500) && outside > 4000, "{known:?} {outside}");
+    }
+
+    /// By squares.
+    #[test]
+    fn lengths_are_in_their_forms() {
+        let mut random = Random(9);
+        let (mut known, mut outside) = (0, 0);
+        for _ in 0..3000 {
+            let vector = [(); 3].map(|()| random.form());
+            let (at, found) = ([(); 3].map(|()| random.next()), Form::length(vector));
+            if !found.radius.is_finite() {
+                continue;
+            }
+            let square = vector.map(|form| value(form, at, random.next())).into_iter();
+            let square = square.map(|x| x.clone() * x).fold(exact(0.0), |sum, part| sum + part);
+            let is_between = |share: f64| {
+                let [low, high] = [-share, share].map(|share| value(found, at, share));
+                low.clone() * low <= square && square <= high.clone() * high
+            };
+            assert!(is_between(1.0), "{vector:?} {at:?} {found:?}");
+            known += 1;
+            outside += usize::from(!is_between(0.01));
+        }
+        assert!(known > 1500 && outside > 300, "{known} {outside}");
+    }
+}

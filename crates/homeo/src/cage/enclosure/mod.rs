@@ -32,6 +32,7 @@ struct Edge {
     ends: [u32; 2],
     along: Vector,
     length: Form,
+    by_length: Form,
 }
 
 #[derive(Clone, Debug)]
@@ -45,6 +46,8 @@ struct Face {
     inward: [Vector; 3],
     /// The inverse heights.
     by_height: [Form; 3],
+    /// The products of the vectors `inward`.
+    products: [Vector; 3],
 }
 
 /// A vertex as seen from a point.
@@ -59,6 +62,7 @@ struct Seen {
 struct Sight {
     ends: [Seen; 2],
     length: Form,
+    by_length: Form,
     is_wide: bool,
     /// Its angle over the distance from its line.
     angle: Form,
@@ -88,7 +92,8 @@ impl Step {
             let ends = [a.min(b), a.max(b)];
             *numbers.entry(ends).or_insert_with(|| {
                 let along = between(points, ends[0], ends[1]);
-                edges.push(Edge { ends, along, length: Form::length(along) });
+                let length = Form::length(along);
+                edges.push(Edge { ends, along, length, by_length: length.inverse() });
                 edges.len() - 1
             })
         };
@@ -167,7 +172,8 @@ impl Face {
         let normal = times(twice_area.inverse(), across);
         let inward = sides.map(|side| times(Form::length(side).inverse(), cross(side, normal)));
         let by_height = sides.map(|side| Form::length(side) * twice_area.inverse());
-        Self { corners, edges, normal, inward, by_height }
+        let products = inward.map(|a| inward.map(|b| dot(a, b)));
+        Self { corners, edges, normal, inward, by_height, products }
     }
 
     fn view(&self, points: &[Point3], at: Vector) -> View {
@@ -186,8 +192,7 @@ impl Face {
         };
         let height = half * if way == Way::Multiply { view.height.square() } else { view.height };
         for (k, &corner) in self.corners.iter().enumerate() {
-            let products = self.inward.map(|inward| dot(inward, self.inward[k]));
-            let weight = (view.inside[k] * over_height + height * dot(angles, products)) * self.by_height[k];
+            let weight = (view.inside[k] * over_height + height * dot(angles, self.products[k])) * self.by_height[k];
             weights[corner as usize] = weights[corner as usize] + weight;
         }
         over_height
@@ -211,8 +216,8 @@ impl Sight {
     fn new(edge: &Edge, seen: &[Seen]) -> Self {
         let ends = edge.ends.map(|v| seen[v as usize]);
         let is_wide = dot(ends[0].to, ends[1].to).middle < 0.0;
-        let mut sight = Self { ends, length: edge.length, is_wide, angle: Form::ZERO };
-        let distance = times(edge.length.inverse(), cross(ends[0].to, edge.along));
+        let mut sight = Self { ends, length: edge.length, by_length: edge.by_length, is_wide, angle: Form::ZERO };
+        let distance = times(edge.by_length, cross(ends[0].to, edge.along));
         let part = sight.part(distance[0].square() + distance[1].square() + distance[2].square());
         sight.angle = if is_wide { pi() * Form::length(distance).inverse() - part } else { part };
         sight
@@ -255,7 +260,7 @@ impl Sight {
         let squares = [height, foot.ends[0].far, foot.ends[1].far].map(Form::square);
         let by = (squares[0] + squares[1] + squares[2]) * (self.product() + foot.product()).inverse();
         let by = if self.is_wide { by - Form::ONE } else { by + Form::ONE };
-        let turn = -(kappa * other * by * self.length.inverse());
+        let turn = -(kappa * other * by * self.by_length);
         let square = inside.square();
         let rise = kappa.square() + turn * (kappa + other) * square;
         let at = kappa.square() * (square + squares[0]);

@@ -54,6 +54,8 @@ pub struct CageEvaluator<'a> {
     steps: Vec<Step>,
     /// From each cage to the one before: near the inverse, to begin the search for it with.
     backward: Vec<Step>,
+    /// The extent of each cage, roughly.
+    sizes: Vec<f64>,
 }
 
 impl<'a> CageEvaluator<'a> {
@@ -62,7 +64,7 @@ impl<'a> CageEvaluator<'a> {
         let step = |from: &[Point3], to: &[Point3]| Step::new(from, to, map.triangles());
         let steps = map.stages().windows(2).map(|pair| step(&pair[0], &pair[1])).collect();
         let backward = map.stages().windows(2).map(|pair| step(&pair[1], &pair[0])).collect();
-        Self { map, steps, backward }
+        Self { map, steps, backward, sizes: map.stages().iter().map(|stage| extent(stage)).collect() }
     }
 
     /// Image of a point inside of the source cage or on it.
@@ -76,13 +78,8 @@ impl<'a> CageEvaluator<'a> {
     /// # Complexity
     /// Linear in triangles and steps.
     pub fn forward(&self, point: Point3) -> Result<Enclosed, CageEvaluationError> {
-        let (source, target) = (self.stage(0), self.stage(self.steps.len()));
-        check_coordinates(point)?;
-        if let Some(image) = along_triangle([source, target], self.map.triangles(), point) {
+        if let Some(image) = self.on_cage([0, self.steps.len()], point, CageEvaluationError::OutsideSource)? {
             return Ok(image);
-        }
-        if !contains(source, self.map.triangles(), point) {
-            return Err(CageEvaluationError::OutsideSource);
         }
         let mut here: Region = point.map(Form::exact);
         for (number, step) in self.steps.iter().enumerate() {
@@ -107,13 +104,8 @@ impl<'a> CageEvaluator<'a> {
     /// # Complexity
     /// Some ten times [`forward`](Self::forward).
     pub fn inverse(&self, point: Point3) -> Result<Enclosed, CageEvaluationError> {
-        let (source, target) = (self.stage(0), self.stage(self.steps.len()));
-        check_coordinates(point)?;
-        if let Some(preimage) = along_triangle([target, source], self.map.triangles(), point) {
+        if let Some(preimage) = self.on_cage([self.steps.len(), 0], point, CageEvaluationError::OutsideTarget)? {
             return Ok(preimage);
-        }
-        if !contains(target, self.map.triangles(), point) {
-            return Err(CageEvaluationError::OutsideTarget);
         }
         let mut here = Enclosed { point, radius: 0.0 };
         for number in (0..self.steps.len()).rev() {
@@ -136,9 +128,24 @@ impl<'a> CageEvaluator<'a> {
         Some(product)
     }
 
+    /// Where a point on one cage is on another; none inside, the error outside.
+    fn on_cage(
+        &self,
+        [from, to]: [usize; 2],
+        point: Point3,
+        outside: CageEvaluationError,
+    ) -> Result<Option<Enclosed>, CageEvaluationError> {
+        check_coordinates(point)?;
+        let triangles = self.map.triangles();
+        match along_triangle([self.stage(from), self.stage(to)], triangles, point) {
+            None if !contains(self.stage(from), triangles, point) => Err(outside),
+            found => Ok(found),
+        }
+    }
+
     /// Value and derivative of a step, rounded; none where too little is known.
     fn linear(&self, number: usize, at: Point3) -> Option<(Point3, [[f64; 3]; 3])> {
-        let by = SMALL * self.size(number);
+        let by = SMALL * self.sizes[number];
         let there = self.steps[number].enclose(cube(at, by));
         is_known(&there).then(|| (there.map(|c| c.middle), there.map(|c| c.slopes.map(|x| x / by))))
     }
@@ -159,7 +166,7 @@ impl<'a> CageEvaluator<'a> {
         let mut at =
             [guess, image].into_iter().chain(self.centres(number)).find(|at| is_inside(at) && linear(*at).is_some())?;
         let (mut miss, mut derivative) = linear(at)?;
-        let rounding = 4.0 * f64::EPSILON * self.size(number + 1);
+        let rounding = 4.0 * f64::EPSILON * self.sizes[number + 1];
         for _ in 0..60 {
             if norm(miss) < rounding {
                 break;
@@ -191,17 +198,10 @@ impl<'a> CageEvaluator<'a> {
         })
     }
 
-    /// The extent of a cage, roughly.
-    fn size(&self, number: usize) -> f64 {
-        let points = self.stage(number);
-        let from = points.first().copied().unwrap_or_default();
-        points.iter().map(|p| norm([0, 1, 2].map(|k| p[k] - from[k]))).fold(0.0, f64::max)
-    }
-
     /// That the preimage of what is enclosed is near a point.
     fn prove_near(&self, number: usize, point: Point3, image: Enclosed) -> Option<Enclosed> {
         let step = &self.steps[number];
-        let mut radius = 4.0 * f64::EPSILON * self.size(number) + image.radius;
+        let mut radius = 4.0 * f64::EPSILON * self.sizes[number] + image.radius;
         for _ in 0..40 {
             let about = cube(point, radius);
             if !step.is_clear(about) || !contains(self.stage(number), self.map.triangles(), point) {
@@ -232,6 +232,11 @@ fn crosses(there: &Region, image: Enclosed) -> bool {
         let rounded = 8.0 * f64::EPSILON * (along.deviation() + along.middle.abs());
         along.slopes[k] > along.middle.abs() + others + rounded
     })
+}
+
+fn extent(points: &[Point3]) -> f64 {
+    let from = points.first().copied().unwrap_or_default();
+    points.iter().map(|p| norm([0, 1, 2].map(|k| p[k] - from[k]))).fold(0.0, f64::max)
 }
 
 fn cube(at: Point3, by: f64) -> Region {
